@@ -1,0 +1,14 @@
+# What every target of this project is built with: the language level, and warnings as errors on our own code alone.
+function(saw_ndt_set_up_target target)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+endfunction()
+
+# saw_ndt_add_test(NAME SOURCE...): a GoogleTest program, each of its tests known to CTest by its own name.
+function(saw_ndt_add_test name)
+  add_executable(${name} ${ARGN})
+  saw_ndt_set_up_target(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test)
+  target_link_libraries(${name} PRIVATE saw_ndt::saw_ndt GTest::gtest_main)
+  gtest_discover_tests(${name} PROPERTIES TIMEOUT 600 DISCOVERY_TIMEOUT 60)
+endfunction()

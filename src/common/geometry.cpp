@@ -1,0 +1,59 @@
+#include "saw_ndt/common/geometry.h"
+
+#include <Eigen/SVD>
+#include <cmath>
+
+namespace saw_ndt {
+
+double wrappedAngle(double angle) {
+  const double wrapped = std::remainder(angle, 2.0 * kPi);
+  return wrapped <= -kPi ? wrapped + 2.0 * kPi : wrapped;
+}
+
+Eigen::Matrix3d skewSymmetric(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+Eigen::Isometry3d normalizedRotation(const Eigen::Isometry3d& T) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(T.linear(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d u = svd.matrixU();
+  if (u.determinant() * svd.matrixV().determinant() < 0.0) u.col(2) *= -1.0;
+  Eigen::Isometry3d normalized = T;
+  normalized.linear() = u * svd.matrixV().transpose();
+  return normalized;
+}
+
+Eigen::Matrix3d rotationFromVector(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  if (angle < 1e-12) return Eigen::Matrix3d::Identity() + skewSymmetric(rotation_vector);
+  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
+}
+
+double rotationAngle(const Eigen::Matrix3d& R) {
+  const Eigen::Vector3d axis(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  return std::atan2(axis.norm(), R.trace() - 1.0);
+}
+
+double heading(const Eigen::Isometry3d& T) { return std::atan2(T.linear()(1, 0), T.linear()(0, 0)); }
+
+Eigen::Isometry3d transformFromXyzRpy(const Vector6d& xyz_rpy) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = xyz_rpy.head<3>();
+  T.linear() = (Eigen::AngleAxisd(xyz_rpy[5], Eigen::Vector3d::UnitZ()) *
+                Eigen::AngleAxisd(xyz_rpy[4], Eigen::Vector3d::UnitY()) *
+                Eigen::AngleAxisd(xyz_rpy[3], Eigen::Vector3d::UnitX()))
+                   .toRotationMatrix();
+  return T;
+}
+
+Vector6d xyzRpyFromTransform(const Eigen::Isometry3d& T) {
+  const Eigen::Matrix3d& R = T.linear();
+  Vector6d xyz_rpy;
+  xyz_rpy << T.translation(), std::atan2(R(2, 1), R(2, 2)), std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))),
+      std::atan2(R(1, 0), R(0, 0));
+  return xyz_rpy;
+}
+
+}  // namespace saw_ndt
