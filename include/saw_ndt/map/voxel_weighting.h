@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "saw_ndt/common/labels.h"
+
+namespace saw_ndt {
+
+/// Shape of the points of a voxel, the l_j of the paper: which of f_L, f_P, f_V is the largest.
+enum class StructureClass : std::uint8_t { Linear = 1, Planar = 2, Volumetric = 3 };
+
+/// Structural confidence s of a point by its label, in [0, 1]. A label of confidence 0 takes no part at all: neither in
+/// the statistics of a voxel nor as a source point. The default trusts noise (points of components that are too small
+/// for the segmentation to keep) less than the rest but does not drop it; paper() drops it.
+struct ConfidenceOptions {
+  double noise = 0.75;
+  double ground = 0.5;      ///< s_g of the paper
+  double non_ground = 1.0;  ///< s_o of the paper
+
+  /// The confidences of the paper: rejected points take no part.
+  static ConfidenceOptions paper() { return {0.0, 0.5, 1.0}; }
+  /// Every point counts alike, whatever its label: classical NDT.
+  static ConfidenceOptions uniform() { return {1.0, 1.0, 1.0}; }
+
+  double of(StructuralLabel label) const {
+    return label == StructuralLabel::Ground ? ground : label == StructuralLabel::NonGround ? non_ground : noise;
+  }
+  /// Throws std::invalid_argument that names the field and its value.
+  void check() const;
+};
+
+/// How the points of a voxel become its distribution and its weight w_target = mean confidence * alpha(class).
+struct VoxelWeighting {
+  ConfidenceOptions confidence;
+  double linear_alpha = 0.75;          ///< alpha of linear voxels
+  double planar_alpha = 1.25;          ///< alpha of planar voxels
+  double volumetric_alpha = 1.0;       ///< alpha of volumetric voxels
+  int min_points_per_voxel = 6;        ///< voxels with fewer points have no distribution; at least 3
+  double min_eigenvalue_ratio = 0.01;  ///< smaller eigenvalues are raised to this share of the largest, in (0, 1]
+  int coarse_factor = 3;               ///< edge of a coarse voxel, in voxels: 2 or more; 1 for no coarse level
+
+  double alpha(StructureClass structure_class) const {
+    return structure_class == StructureClass::Linear   ? linear_alpha
+           : structure_class == StructureClass::Planar ? planar_alpha
+                                                       : volumetric_alpha;
+  }
+  /// Throws std::invalid_argument that names the field and its value.
+  void check() const;
+};
+
+}  // namespace saw_ndt

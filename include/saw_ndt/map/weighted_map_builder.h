@@ -1,0 +1,40 @@
+#pragma once
+
+#include <pcl/point_cloud.h>
+
+#include <Eigen/Geometry>
+
+#include "saw_ndt/map/voxel_sums_table.h"
+#include "saw_ndt/map/weighted_voxel_map.h"
+
+namespace saw_ndt {
+
+/// Collects labelled points into voxel sums, cloud after cloud. Memory grows with the voxels met, never with the
+/// points; the result does not depend on the order of clouds or on how they were spread over builders.
+class WeightedMapBuilder {
+ public:
+  /// @param resolution_m  edge of a voxel, positive
+  /// @throws std::invalid_argument
+  explicit WeightedMapBuilder(double resolution_m);
+
+  /// Adds the finite points of a cloud. With a `label` field the points count under their StructuralLabel, without one
+  /// the map becomes an unlabelled one; clouds of the two kinds do not mix.
+  /// @param T_map_cloud  pose of the cloud's frame in the map frame
+  /// @throws std::invalid_argument for a label that is no StructuralLabel, a pose that is not finite, or mixed kinds
+  template <typename PointT>
+  void addCloud(const pcl::PointCloud<PointT>& cloud, const Eigen::Isometry3d& T_map_cloud);
+
+  /// Adds all that another builder of the same resolution has collected. @throws std::invalid_argument
+  void merge(const WeightedMapBuilder& other);
+
+  /// The map of everything added so far.
+  WeightedVoxelMap build(const VoxelWeighting& weighting = {}) const;
+
+ private:
+  void requireKind(bool labelled);
+
+  MapOrigin origin_;
+  VoxelSumsTable table_;
+};
+
+}  // namespace saw_ndt

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "saw_ndt/common/geometry.h"
+#include "saw_ndt/registration/ndt_objective.h"
+#include "saw_ndt/registration/score_function.h"
+
+namespace saw_ndt {
+
+/// How the pose of greatest score is sought.
+enum class Optimizer {
+  DAMPED_NEWTON,        ///< Newton steps on SE(3) that stay ascending where the score is not concave
+  NEWTON_MORE_THUENTE,  ///< PCL's: Newton steps in Euler angles with the line search of More and Thuente (1994)
+};
+
+struct AlignmentOptions {
+  NeighborhoodSearchMethod neighborhood_search = NeighborhoodSearchMethod::DIRECT7;
+  ScoreFunction score_function = ScoreFunction::Magnusson;
+  double outlier_ratio = 0.55;    ///< expected share of outliers, in (0, 1)
+  bool use_weights = true;        ///< false, or a source or map without labels: classical NDT, W = 1
+  double mismatch_penalty = 0.1;  ///< lambda_m of the paper, in [0, 1]
+
+  Optimizer optimizer = Optimizer::DAMPED_NEWTON;
+  int max_iterations = 35;              ///< steps on the fine level, 1 or more
+  double translation_epsilon_m = 1e-3;  ///< converged when a step is shorter than this (m) ...
+  double rotation_epsilon_rad = 5e-5;   ///< ... and turns less than this (rad)
+  double max_step_m = 0.5;              ///< longest step of DAMPED_NEWTON (m), at 1 m voxels; grows with the voxels
+  /// Least share of the Gauss-Newton curvature that a Newton step of DAMPED_NEWTON reckons with, in (0, 1]; 1 is
+  /// iteratively reweighted least squares, towards 0 is Newton's method, which leaves the basin where it is not concave.
+  double least_curvature_share = 0.5;
+
+  bool use_coarse_level = true;         ///< DAMPED_NEWTON: start on the coarse level where the map has one
+  int coarse_max_iterations = 10;       ///< steps on the coarse level at most, 1 or more
+  int coarse_stride = 4;                ///< every how many-th source point the coarse level uses, 1 or more
+  double coarse_settled_voxels = 0.1;   ///< the coarse level is left when a step is shorter, in fine voxels
+
+  double line_search_max_step = 0.1;    ///< NEWTON_MORE_THUENTE: longest step, metres and radians in one norm
+  double line_search_min_step = 5e-4;   ///< NEWTON_MORE_THUENTE: shortest step of the line search
+
+  int threads = 0;  ///< 0: all cores
+
+  /// Throws std::invalid_argument that names the field and its value.
+  void check() const;
+};
+
+enum class AlignmentStatus {
+  CONVERGED,
+  ITERATION_LIMIT,  ///< the last step was still longer than the epsilons
+  NO_OVERLAP,       ///< no source point met a voxel
+  NO_SOURCE,        ///< there is no finite source point
+  NO_TARGET,        ///< the map has no voxel with a distribution
+};
+
+/// The status in words: "converged", "iteration limit", ...
+const char* toString(AlignmentStatus status);
+
+struct AlignmentResult {
+  Eigen::Isometry3d T_map_source = Eigen::Isometry3d::Identity();
+  AlignmentStatus status = AlignmentStatus::NO_SOURCE;
+  int iterations = 0;   ///< steps taken on the fine level
+  int evaluations = 0;  ///< evaluations of score, gradient and Hessian on either level
+  double score = 0.0;   ///< at the pose of the last evaluation, less than the epsilons from T_map_source if converged
+  double likelihood = 0.0;  ///< score / number of source points, as PCL; it changes with the weights
+  /// Curvature of the score by (v, w), see NdtDerivatives; what the step was solved with, positive semidefinite.
+  Matrix6d information = Matrix6d::Zero();
+
+  bool converged() const { return status == AlignmentStatus::CONVERGED; }
+};
+
+}  // namespace saw_ndt

@@ -1,0 +1,34 @@
+#include "saw_ndt/map/weighted_voxel_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/map/map_file.h"
+#include "saw_ndt/map/map_tile.h"
+
+namespace saw_ndt {
+
+WeightedVoxelMap::WeightedVoxelMap(const MapOrigin& origin, std::vector<LabelledVoxelSums> entries,
+                                   const VoxelWeighting& weighting)
+    : origin_(origin), weighting_(weighting), entries_(std::move(entries)) {
+  checkOption(origin.resolution_m > 0.0 && std::isfinite(origin.resolution_m), "resolution_m", origin.resolution_m,
+              "positive");
+  weighting_.check();
+  if (!std::is_sorted(entries_.begin(), entries_.end(), inMapOrder)) {
+    std::sort(entries_.begin(), entries_.end(), inMapOrder);
+  }
+  fine_ = NdtLevel::fromSums(entries_, origin.resolution_m, 1, weighting_);
+  if (weighting_.coarse_factor > 1) {
+    coarse_ = NdtLevel::fromSums(entries_, origin.resolution_m, weighting_.coarse_factor, weighting_);
+  }
+}
+
+void WeightedVoxelMap::save(const std::string& path) const { writeMapFile(path, origin_, entries_); }
+
+WeightedVoxelMap WeightedVoxelMap::load(const std::string& path, const VoxelWeighting& weighting) {
+  MapFileContent content = readMapFile(path);
+  return {content.origin, std::move(content.entries), weighting};
+}
+
+}  // namespace saw_ndt

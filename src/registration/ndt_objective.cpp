@@ -1,0 +1,206 @@
+#include "saw_ndt/registration/ndt_objective.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace saw_ndt {
+namespace {
+
+constexpr std::size_t kPointsPerBlock = 1024;
+
+// A pair whose exponent is below -kLargestExponent adds less than 5e-18 of its amplitude: less than rounding.
+constexpr double kLargestExponent = 40.0;
+
+// Voxels further than this from the origin voxel cannot be numbered beside it.
+constexpr double kFarthestVoxel = 1.0e9;
+
+struct Neighbour {
+  std::ptrdiff_t offset;
+  double dx, dy, dz;  // in voxels
+};
+
+template <NeighborhoodSearchMethod method>
+constexpr std::size_t kNeighbourCount = method == NeighborhoodSearchMethod::DIRECT1   ? 1
+                                        : method == NeighborhoodSearchMethod::DIRECT7 ? 7
+                                                                                      : 27;
+
+template <NeighborhoodSearchMethod method>
+constexpr std::array<Neighbour, kNeighbourCount<method>> neighbours() {
+  std::array<Neighbour, kNeighbourCount<method>> result{};
+  std::size_t count = 0;
+  for (int z = -1; z <= 1; ++z) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) {
+        const int distance = x * x + y * y + z * z;
+        if (method == NeighborhoodSearchMethod::DIRECT1 && distance > 0) continue;
+        if (method == NeighborhoodSearchMethod::DIRECT7 && distance > 1) continue;
+        result[count++] = {VoxelIndex::neighbourOffset(x, y, z), static_cast<double>(x), static_cast<double>(y),
+                           static_cast<double>(z)};
+      }
+    }
+  }
+  return result;
+}
+
+// The sums of one point over its pairs: a force and two symmetric matrices (xx xy xz yy yz zz).
+struct PointSums {
+  double gx = 0.0, gy = 0.0, gz = 0.0;
+  std::array<double, 6> curvature{};
+  std::array<double, 6> radial{};
+};
+
+// Adds J^T M J for the symmetric M, with J = [I, -[r]x].
+void addProjected(const std::array<double, 6>& m, const Eigen::Vector3d& r, Matrix6d& sum) {
+  Eigen::Matrix3d M;
+  M << m[0], m[1], m[2], m[1], m[3], m[4], m[2], m[4], m[5];
+  // Column k of -M [r]x is M (e_k x r).
+  Eigen::Matrix3d turned;
+  turned.col(0) = M.col(2) * r.y() - M.col(1) * r.z();
+  turned.col(1) = M.col(0) * r.z() - M.col(2) * r.x();
+  turned.col(2) = M.col(1) * r.x() - M.col(0) * r.y();
+  sum.topLeftCorner<3, 3>() += M;
+  sum.topRightCorner<3, 3>() += turned;
+  // -[r]x^T applied from the left: row k is (e_k x r)^T times `turned`.
+  sum.row(3).tail<3>() += turned.row(2) * r.y() - turned.row(1) * r.z();
+  sum.row(4).tail<3>() += turned.row(0) * r.z() - turned.row(2) * r.x();
+  sum.row(5).tail<3>() += turned.row(1) * r.x() - turned.row(0) * r.y();
+}
+
+}  // namespace
+
+double compatibility(double source_confidence, double voxel_mean_confidence, const PairWeighting& weighting) {
+  const double range = std::abs(weighting.confidence.non_ground - weighting.confidence.ground);
+  const double difference = std::abs(source_confidence - voxel_mean_confidence);
+  const double share = range > 0.0 ? std::min(1.0, difference / range) : 0.0;
+  return 1.0 - (1.0 - weighting.mismatch_penalty) * share;
+}
+
+template <NeighborhoodSearchMethod method, bool weighted>
+void NdtObjective::evaluateBlock(const SourcePoints& source, const Eigen::Isometry3d& T_map_source, std::size_t first,
+                                 std::size_t last, std::size_t stride, NdtDerivatives& sums) const {
+  static constexpr std::array<Neighbour, kNeighbourCount<method>> kNeighbours = neighbours<method>();
+  const double resolution = level_.resolution();
+  const double inverse_resolution = 1.0 / resolution;
+  const double half_d2 = 0.5 * score_.d2;
+  const Eigen::Matrix3d R = T_map_source.linear();
+  // Positions are taken relative to a voxel near the source, so that far from the map's origin no digit is lost.
+  const Eigen::Vector3d origin_voxel = (T_map_source.translation() * inverse_resolution).array().floor();
+  const Eigen::Vector3d t = T_map_source.translation() - origin_voxel * resolution;
+  const VoxelCoordinate origin = origin_voxel.cast<int>();
+  const std::array<double, kStructuralLabelCount> confidence_of_label = {
+      weighting_.confidence.noise, weighting_.confidence.ground, weighting_.confidence.non_ground};
+  const NdtCell* cells = level_.cells().data();
+  VoxelIndex::Cursor cursor;
+
+  for (std::size_t i = first; i < last; i += stride) {
+    const Eigen::Vector3d r = R * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
+    const Eigen::Vector3d p = r + t;
+    const Eigen::Vector3d voxel = (p * inverse_resolution).array().floor();
+    if (!(voxel.cwiseAbs().maxCoeff() < kFarthestVoxel)) continue;
+    const std::int32_t* cell_numbers = level_.index().cell(voxel.cast<int>() + origin, cursor);
+    if (cell_numbers == nullptr) continue;
+    const Eigen::Vector3d from_centre = p - (voxel.array() + 0.5).matrix() * resolution;
+    const double source_confidence = weighted ? confidence_of_label[source.label[i]] : 1.0;
+
+    PointSums point;
+    double point_score = 0.0;
+    std::size_t pairs = 0;
+    for (const Neighbour& neighbour : kNeighbours) {
+      const std::int32_t number = cell_numbers[neighbour.offset];
+      if (number == VoxelIndex::kNone) continue;
+      const NdtCell& cell = cells[number];
+      const double qx = from_centre.x() - neighbour.dx * resolution - cell.mean_from_centre[0];
+      const double qy = from_centre.y() - neighbour.dy * resolution - cell.mean_from_centre[1];
+      const double qz = from_centre.z() - neighbour.dz * resolution - cell.mean_from_centre[2];
+      if (method == NeighborhoodSearchMethod::RADIUS && qx * qx + qy * qy + qz * qz > resolution * resolution) continue;
+      ++pairs;
+      const double* c = cell.inverse_covariance;
+      const double ux = c[0] * qx + c[1] * qy + c[2] * qz;
+      const double uy = c[1] * qx + c[3] * qy + c[4] * qz;
+      const double uz = c[2] * qx + c[4] * qy + c[5] * qz;
+      const double exponent = half_d2 * (qx * ux + qy * uy + qz * uz);
+      if (exponent > kLargestExponent) continue;
+      double score = score_.amplitude * std::exp(-exponent);
+      if (weighted) {
+        score *= source_confidence * cell.weight * compatibility(source_confidence, cell.mean_confidence, weighting_);
+      }
+      point_score += score;
+      const double k = score * score_.d2;
+      point.gx -= k * ux;
+      point.gy -= k * uy;
+      point.gz -= k * uz;
+      for (std::size_t j = 0; j < 6; ++j) point.curvature[j] += k * c[j];
+      const double k2 = k * score_.d2;
+      point.radial[0] += k2 * ux * ux;
+      point.radial[1] += k2 * ux * uy;
+      point.radial[2] += k2 * ux * uz;
+      point.radial[3] += k2 * uy * uy;
+      point.radial[4] += k2 * uy * uz;
+      point.radial[5] += k2 * uz * uz;
+    }
+    if (pairs == 0) continue;
+    sums.pair_count += pairs;
+    sums.score += point_score;
+    const Eigen::Vector3d g(point.gx, point.gy, point.gz);
+    sums.force += g;
+    sums.moment += g * r.transpose();
+    addProjected(point.curvature, r, sums.curvature);
+    addProjected(point.radial, r, sums.radial_curvature);
+  }
+}
+
+NdtDerivatives NdtObjective::evaluate(const SourcePoints& source, const Eigen::Isometry3d& T_map_source, int threads,
+                                      Workspace& workspace, std::size_t stride) const {
+  NdtDerivatives total;
+  const double farthest = (T_map_source.translation() / level_.resolution()).cwiseAbs().maxCoeff();
+  if (!(farthest < kFarthestVoxel) || !T_map_source.linear().allFinite()) return total;
+
+  using Block = void (NdtObjective::*)(const SourcePoints&, const Eigen::Isometry3d&, std::size_t, std::size_t,
+                                       std::size_t, NdtDerivatives&) const;
+  Block block = nullptr;
+  const bool weighted = weighting_.enabled;
+  switch (method_) {
+    case NeighborhoodSearchMethod::RADIUS:
+      block = weighted ? &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::RADIUS, true>
+                       : &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::RADIUS, false>;
+      break;
+    case NeighborhoodSearchMethod::DIRECT26:
+      block = weighted ? &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT26, true>
+                       : &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT26, false>;
+      break;
+    case NeighborhoodSearchMethod::DIRECT7:
+      block = weighted ? &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT7, true>
+                       : &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT7, false>;
+      break;
+    case NeighborhoodSearchMethod::DIRECT1:
+      block = weighted ? &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT1, true>
+                       : &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT1, false>;
+      break;
+  }
+
+  const std::size_t block_size = kPointsPerBlock * stride;
+  const std::size_t block_count = (source.size() + block_size - 1) / block_size;
+  workspace.blocks.assign(block_count, NdtDerivatives());
+  const auto signed_count = static_cast<std::ptrdiff_t>(block_count);
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::ptrdiff_t b = 0; b < signed_count; ++b) {
+    const std::size_t first = static_cast<std::size_t>(b) * block_size;
+    (this->*block)(source, T_map_source, first, std::min(first + block_size, source.size()), stride,
+                   workspace.blocks[static_cast<std::size_t>(b)]);
+  }
+  for (const NdtDerivatives& sums : workspace.blocks) {
+    total.score += sums.score;
+    total.force += sums.force;
+    total.moment += sums.moment;
+    total.curvature += sums.curvature;
+    total.radial_curvature += sums.radial_curvature;
+    total.pair_count += sums.pair_count;
+  }
+  for (Matrix6d* matrix : {&total.curvature, &total.radial_curvature}) {
+    matrix->bottomLeftCorner<3, 3>() = matrix->topRightCorner<3, 3>().transpose();
+  }
+  return total;
+}
+
+}  // namespace saw_ndt
