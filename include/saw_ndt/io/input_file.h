@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+
+namespace saw_ndt {
+
+/// Opens a file for binary reading. Throws Error with the system's reason where that fails, or where it is a folder.
+std::ifstream openInputFile(const std::filesystem::path& path);
+
+}  // namespace saw_ndt

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <vector>
+
+namespace saw_ndt {
+
+/// Where the body (the LiDAR, unless stated otherwise) was at a moment.
+struct StampedPose {
+  double stamp_s = 0.0;
+  Eigen::Isometry3d T_map_body = Eigen::Isometry3d::Identity();
+};
+
+/// The two text formats of trajectories.
+enum class TrajectoryFormat {
+  Tum,    ///< stamp tx ty tz qx qy qz qw
+  Kitti,  ///< 12 numbers, the upper 3x4 of the pose row by row; no stamps
+};
+
+/// The time from a scan to the next where a KITTI trajectory comes without stamps.
+constexpr double kNominalScanPeriod_s = 0.1;
+
+/// A trajectory file's poses, as the file states them, and its format.
+struct Trajectory {
+  TrajectoryFormat format = TrajectoryFormat::Tum;
+  std::vector<StampedPose> poses;  ///< stamps of a KITTI file: position in the file times kNominalScanPeriod_s
+};
+
+/// Reads a trajectory in either format, told apart by the number of columns. In all readers below lines that are blank
+/// or start with '#' are skipped, and what is wrong is an Error that names the line: another number of columns, what is
+/// no finite number, a quaternion whose norm is off 1 by more than 1e-3, a matrix that is no rigid transform to within
+/// 1e-3. A file without poses is an Error too. Rotations are returned normalized.
+Trajectory readTrajectory(const std::filesystem::path& path);
+
+/// Reads stamped poses in TUM format.
+std::vector<StampedPose> readTumTrajectory(const std::filesystem::path& path);
+
+/// Reads poses in KITTI format; those of the KITTI benchmark are of the left camera (lidarPose() converts them).
+std::vector<Eigen::Isometry3d> readKittiTrajectory(const std::filesystem::path& path);
+
+/// Reads one stamp (s) a line, as KITTI's times.txt. Throws Error that names the line.
+std::vector<double> readStamps(const std::filesystem::path& path);
+
+/// Writes TUM format: stamps and positions with 9 decimals, quaternions (qw >= 0) with 12. Throws Error.
+void writeTumTrajectory(const std::filesystem::path& path, const std::vector<StampedPose>& trajectory);
+
+/// Writes KITTI format with 13 significant digits. Throws Error.
+void writeKittiTrajectory(const std::filesystem::path& path, const std::vector<Eigen::Isometry3d>& poses);
+
+/// The LiDAR's pose in the first LiDAR frame from the camera's in the first camera frame: Tr^-1 P Tr, normalized.
+Eigen::Isometry3d lidarPose(const Eigen::Isometry3d& camera_pose, const Eigen::Isometry3d& T_camera_lidar);
+
+/// The camera's pose in the first camera frame from the LiDAR's in the first LiDAR frame: Tr T Tr^-1, normalized.
+Eigen::Isometry3d cameraPose(const Eigen::Isometry3d& lidar_pose, const Eigen::Isometry3d& T_camera_lidar);
+
+}  // namespace saw_ndt

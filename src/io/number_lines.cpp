@@ -1,0 +1,56 @@
+#include "number_lines.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/io/input_file.h"
+
+namespace saw_ndt {
+
+namespace {
+constexpr std::string_view kBlanks = " \t\r\f\v";
+}
+
+std::string linePlace(std::size_t number) { return "line " + std::to_string(number); }
+
+std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
+  std::ifstream stream = openInputFile(path);
+  std::vector<TextLine> lines;
+  std::string text;
+  for (std::size_t number = 1; std::getline(stream, text); ++number) {
+    const std::size_t first = text.find_first_not_of(kBlanks);
+    if (first != std::string::npos && text[first] != '#') lines.push_back({number, text});
+  }
+  if (stream.bad()) throw Error(path.string(), "", "could not be read");
+  return lines;
+}
+
+std::vector<double> parseNumbers(const std::filesystem::path& path, std::size_t line, std::string_view text) {
+  std::vector<double> values;
+  for (std::size_t first = text.find_first_not_of(kBlanks); first != std::string_view::npos;
+       first = text.find_first_not_of(kBlanks)) {
+    text.remove_prefix(first);
+    const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+    const std::string_view digits = word.front() == '+' ? word.substr(1) : word;
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
+      throw Error(path.string(), linePlace(line), "'" + std::string(word.substr(0, 40)) + "' is no finite number");
+    }
+    values.push_back(value);
+    text.remove_prefix(word.size());
+  }
+  return values;
+}
+
+std::vector<NumberLine> readNumberLines(const std::filesystem::path& path) {
+  std::vector<NumberLine> lines;
+  for (const TextLine& line : readTextLines(path)) {
+    lines.push_back({line.number, parseNumbers(path, line.number, line.text)});
+  }
+  return lines;
+}
+
+}  // namespace saw_ndt

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace saw_ndt {
+
+/// A line of a text file and its number, from 1.
+struct TextLine {
+  std::size_t number;
+  std::string text;
+};
+
+/// The numbers of one line of a text file.
+struct NumberLine {
+  std::size_t number;
+  std::vector<double> values;
+};
+
+/// "line N", the place that an Error names.
+std::string linePlace(std::size_t number);
+
+/// The lines of a file that are neither blank nor comments ('#' first), without line ends of either kind.
+std::vector<TextLine> readTextLines(const std::filesystem::path& path);
+
+/// Numbers separated by blanks, whatever the locale. Throws Error that quotes what is no finite number.
+std::vector<double> parseNumbers(const std::filesystem::path& path, std::size_t line, std::string_view text);
+
+/// readTextLines() and parseNumbers() in one.
+std::vector<NumberLine> readNumberLines(const std::filesystem::path& path);
+
+}  // namespace saw_ndt
