@@ -1,10 +1,7 @@
 #include "saw_ndt/map/weighted_map_builder.h"
 
-#include <pcl/point_types.h>
-
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include "saw_ndt/common/error.h"
 
@@ -23,29 +20,9 @@ void WeightedMapBuilder::requireKind(bool labelled) {
   }
 }
 
-template <typename PointT>
-void WeightedMapBuilder::addCloud(const pcl::PointCloud<PointT>& cloud, const Eigen::Isometry3d& T_map_cloud) {
-  constexpr bool kLabelled = pcl::traits::has_label<PointT>::value;
+void WeightedMapBuilder::startCloud(const Eigen::Isometry3d& T_map_cloud, bool labelled) {
   if (!T_map_cloud.matrix().allFinite()) throw std::invalid_argument("T_map_cloud is not finite");
-  if constexpr (kLabelled) {
-    for (const PointT& point : cloud) {
-      if (point.label >= kStructuralLabelCount) {
-        throw std::invalid_argument("label = " + std::to_string(point.label) +
-                                    ": must be 0 (noise), 1 (ground) or 2 (non-ground)");
-      }
-    }
-  }
-  requireKind(kLabelled);
-  const double inverse_resolution = 1.0 / origin_.resolution_m;
-  QuantizedPosition position;
-  for (const PointT& point : cloud) {
-    const Eigen::Vector3d p_map = T_map_cloud * Eigen::Vector3d(point.x, point.y, point.z);
-    if (!quantize(p_map, inverse_resolution, position)) continue;
-    StructuralLabel label = StructuralLabel::NonGround;
-    if constexpr (kLabelled) label = static_cast<StructuralLabel>(point.label);
-    table_.at(position.voxel, label).add(position.steps);
-    ++origin_.point_count;
-  }
+  requireKind(labelled);
   ++origin_.scan_count;
 }
 
@@ -62,9 +39,5 @@ void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
 WeightedVoxelMap WeightedMapBuilder::build(const VoxelWeighting& weighting) const {
   return {origin_, table_.entries(), weighting};
 }
-
-template void WeightedMapBuilder::addCloud(const pcl::PointCloud<pcl::PointXYZ>&, const Eigen::Isometry3d&);
-template void WeightedMapBuilder::addCloud(const pcl::PointCloud<pcl::PointXYZI>&, const Eigen::Isometry3d&);
-template void WeightedMapBuilder::addCloud(const pcl::PointCloud<pcl::PointXYZL>&, const Eigen::Isometry3d&);
 
 }  // namespace saw_ndt

@@ -1,4 +1,4 @@
-#include <Eigen/SVD>
+#include <Eigen/QR>
 #include <cmath>
 
 #include "line_search.h"
@@ -26,8 +26,8 @@ void newtonMoreThuente(const Evaluation& evaluate, const StepLimits& limits, dou
   EulerDerivatives at = evaluateAt(pose);
   result.status = derivatives.pair_count == 0 ? AlignmentStatus::NO_OVERLAP : AlignmentStatus::ITERATION_LIMIT;
   while (result.status == AlignmentStatus::ITERATION_LIMIT && result.iterations < limits.max_iterations) {
-    const Eigen::JacobiSVD<Matrix6d> svd(at.hessian, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Vector6d direction = svd.solve(-at.gradient);
+    // Least squares, so that a direction which nothing constrains is left alone.
+    Vector6d direction = at.hessian.completeOrthogonalDecomposition().solve(-at.gradient);
     const double length = direction.norm();
     if (!std::isfinite(length)) break;
     ++result.iterations;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 
 namespace saw_ndt {
 
@@ -13,5 +15,14 @@ enum class StructuralLabel : std::uint32_t {
 
 /// How many values StructuralLabel has.
 constexpr int kStructuralLabelCount = 3;
+
+/// The label that a `label` field's value stands for. @throws std::invalid_argument where it stands for none
+inline StructuralLabel structuralLabelFromValue(std::uint32_t value) {
+  if (value >= kStructuralLabelCount) {
+    throw std::invalid_argument("label = " + std::to_string(value) +
+                                ": must be 0 (noise), 1 (ground) or 2 (non-ground)");
+  }
+  return static_cast<StructuralLabel>(value);
+}
 
 }  // namespace saw_ndt

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
 
@@ -31,6 +32,7 @@ class WeightedMapBuilder {
   WeightedVoxelMap build(const VoxelWeighting& weighting = {}) const;
 
  private:
+  void startCloud(const Eigen::Isometry3d& T_map_cloud, bool labelled);
   void requireKind(bool labelled);
 
   MapOrigin origin_;
@@ -38,3 +40,5 @@ class WeightedMapBuilder {
 };
 
 }  // namespace saw_ndt
+
+#include "saw_ndt/map/impl/weighted_map_builder.hpp"
