@@ -1,11 +1,10 @@
 #include "saw_ndt/registration/ndt_aligner.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <stdexcept>
 
 #include "optimizers.h"
+#include "saw_ndt/common/threads.h"
 
 namespace saw_ndt {
 namespace {
@@ -20,8 +19,6 @@ NdtObjective objectiveOn(const NdtLevel& level, const WeightedVoxelMap& map, con
           scoreParameters(options.score_function, options.outlier_ratio, level.resolution()), weighting};
 }
 
-int threadCount(const AlignmentOptions& options) { return options.threads > 0 ? options.threads : omp_get_num_procs(); }
-
 }  // namespace
 
 AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoints& source,
@@ -33,7 +30,7 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
   result.status = map.empty() ? AlignmentStatus::NO_TARGET : AlignmentStatus::NO_SOURCE;
   if (map.empty() || source.empty()) return result;
 
-  const int threads = threadCount(options);
+  const int threads = threadCount(options.threads);
   const double resolution = map.resolution();
   StepLimits limits{options.max_iterations, options.translation_epsilon_m, options.rotation_epsilon_rad,
                     options.max_step_m * resolution};
@@ -70,7 +67,7 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
 NdtDerivatives NdtAligner::evaluate(const WeightedVoxelMap& map, const SourcePoints& source,
                                     const Eigen::Isometry3d& T_map_source, const AlignmentOptions& options) {
   options.check();
-  return objectiveOn(map.fine(), map, source, options).evaluate(source, T_map_source, threadCount(options), workspace_);
+  return objectiveOn(map.fine(), map, source, options).evaluate(source, T_map_source, threadCount(options.threads), workspace_);
 }
 
 }  // namespace saw_ndt

@@ -4,47 +4,17 @@
 #include <array>
 #include <cmath>
 
+#include "voxel_pairs.h"
+
 namespace saw_ndt {
 namespace {
 
 constexpr std::size_t kPointsPerBlock = 1024;
 
-// A pair whose exponent is below -kLargestExponent adds less than 5e-18 of its amplitude: less than rounding.
-constexpr double kLargestExponent = 40.0;
-
-// Voxels further than this from the origin voxel cannot be numbered beside it.
-constexpr double kFarthestVoxel = 1.0e9;
-
-struct Neighbour {
-  std::ptrdiff_t offset;
-  double dx, dy, dz;  // in voxels
-};
-
-template <NeighborhoodSearchMethod method>
-constexpr std::size_t kNeighbourCount = method == NeighborhoodSearchMethod::DIRECT1   ? 1
-                                        : method == NeighborhoodSearchMethod::DIRECT7 ? 7
-                                                                                      : 27;
-
-template <NeighborhoodSearchMethod method>
-constexpr std::array<Neighbour, kNeighbourCount<method>> neighbours() {
-  std::array<Neighbour, kNeighbourCount<method>> result{};
-  std::size_t count = 0;
-  for (int z = -1; z <= 1; ++z) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int x = -1; x <= 1; ++x) {
-        const int distance = x * x + y * y + z * z;
-        if (method == NeighborhoodSearchMethod::DIRECT1 && distance > 0) continue;
-        if (method == NeighborhoodSearchMethod::DIRECT7 && distance > 1) continue;
-        result[count++] = {VoxelIndex::neighbourOffset(x, y, z), static_cast<double>(x), static_cast<double>(y),
-                           static_cast<double>(z)};
-      }
-    }
-  }
-  return result;
-}
-
 // The sums of one point over its pairs: a force and two symmetric matrices (xx xy xz yy yz zz).
 struct PointSums {
+  std::size_t pairs = 0;
+  double score = 0.0;
   double gx = 0.0, gy = 0.0, gz = 0.0;
   std::array<double, 6> curvature{};
   std::array<double, 6> radial{};
@@ -79,69 +49,42 @@ double compatibility(double source_confidence, double voxel_mean_confidence, con
 template <NeighborhoodSearchMethod method, bool weighted>
 void NdtObjective::evaluateBlock(const SourcePoints& source, const Eigen::Isometry3d& T_map_source, std::size_t first,
                                  std::size_t last, std::size_t stride, NdtDerivatives& sums) const {
-  static constexpr std::array<Neighbour, kNeighbourCount<method>> kNeighbours = neighbours<method>();
-  const double resolution = level_.resolution();
-  const double inverse_resolution = 1.0 / resolution;
   const double half_d2 = 0.5 * score_.d2;
   const Eigen::Matrix3d R = T_map_source.linear();
-  // Positions are taken relative to a voxel near the source, so that far from the map's origin no digit is lost.
-  const Eigen::Vector3d origin_voxel = (T_map_source.translation() * inverse_resolution).array().floor();
-  const Eigen::Vector3d t = T_map_source.translation() - origin_voxel * resolution;
-  const VoxelCoordinate origin = origin_voxel.cast<int>();
   const std::array<double, kStructuralLabelCount> confidence_of_label = {
       weighting_.confidence.noise, weighting_.confidence.ground, weighting_.confidence.non_ground};
-  const NdtCell* cells = level_.cells().data();
-  VoxelIndex::Cursor cursor;
+  VoxelPairs voxel_pairs(level_, T_map_source);
 
   for (std::size_t i = first; i < last; i += stride) {
     const Eigen::Vector3d r = R * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
-    const Eigen::Vector3d p = r + t;
-    const Eigen::Vector3d voxel = (p * inverse_resolution).array().floor();
-    if (!(voxel.cwiseAbs().maxCoeff() < kFarthestVoxel)) continue;
-    const std::int32_t* cell_numbers = level_.index().cell(voxel.cast<int>() + origin, cursor);
-    if (cell_numbers == nullptr) continue;
-    const Eigen::Vector3d from_centre = p - (voxel.array() + 0.5).matrix() * resolution;
     const double source_confidence = weighted ? confidence_of_label[source.label[i]] : 1.0;
-
     PointSums point;
-    double point_score = 0.0;
-    std::size_t pairs = 0;
-    for (const Neighbour& neighbour : kNeighbours) {
-      const std::int32_t number = cell_numbers[neighbour.offset];
-      if (number == VoxelIndex::kNone) continue;
-      const NdtCell& cell = cells[number];
-      const double qx = from_centre.x() - neighbour.dx * resolution - cell.mean_from_centre[0];
-      const double qy = from_centre.y() - neighbour.dy * resolution - cell.mean_from_centre[1];
-      const double qz = from_centre.z() - neighbour.dz * resolution - cell.mean_from_centre[2];
-      if (method == NeighborhoodSearchMethod::RADIUS && qx * qx + qy * qy + qz * qz > resolution * resolution) continue;
-      ++pairs;
-      const double* c = cell.inverse_covariance;
-      const double ux = c[0] * qx + c[1] * qy + c[2] * qz;
-      const double uy = c[1] * qx + c[3] * qy + c[4] * qz;
-      const double uz = c[2] * qx + c[4] * qy + c[5] * qz;
-      const double exponent = half_d2 * (qx * ux + qy * uy + qz * uz);
-      if (exponent > kLargestExponent) continue;
+    voxel_pairs.forEach<method>(r, [&](const NdtCell& cell, double qx, double qy, double qz) {
+      ++point.pairs;
+      const WhitenedOffset u(cell, qx, qy, qz);
+      const double exponent = half_d2 * u.squared_mahalanobis;
+      if (exponent > kLargestExponent) return;
       double score = score_.amplitude * std::exp(-exponent);
       if (weighted) {
         score *= source_confidence * cell.weight * compatibility(source_confidence, cell.mean_confidence, weighting_);
       }
-      point_score += score;
+      point.score += score;
       const double k = score * score_.d2;
-      point.gx -= k * ux;
-      point.gy -= k * uy;
-      point.gz -= k * uz;
-      for (std::size_t j = 0; j < 6; ++j) point.curvature[j] += k * c[j];
+      point.gx -= k * u.x;
+      point.gy -= k * u.y;
+      point.gz -= k * u.z;
+      for (std::size_t j = 0; j < 6; ++j) point.curvature[j] += k * cell.inverse_covariance[j];
       const double k2 = k * score_.d2;
-      point.radial[0] += k2 * ux * ux;
-      point.radial[1] += k2 * ux * uy;
-      point.radial[2] += k2 * ux * uz;
-      point.radial[3] += k2 * uy * uy;
-      point.radial[4] += k2 * uy * uz;
-      point.radial[5] += k2 * uz * uz;
-    }
-    if (pairs == 0) continue;
-    sums.pair_count += pairs;
-    sums.score += point_score;
+      point.radial[0] += k2 * u.x * u.x;
+      point.radial[1] += k2 * u.x * u.y;
+      point.radial[2] += k2 * u.x * u.z;
+      point.radial[3] += k2 * u.y * u.y;
+      point.radial[4] += k2 * u.y * u.z;
+      point.radial[5] += k2 * u.z * u.z;
+    });
+    if (point.pairs == 0) continue;
+    sums.pair_count += point.pairs;
+    sums.score += point.score;
     const Eigen::Vector3d g(point.gx, point.gy, point.gz);
     sums.force += g;
     sums.moment += g * r.transpose();
@@ -153,8 +96,7 @@ void NdtObjective::evaluateBlock(const SourcePoints& source, const Eigen::Isomet
 NdtDerivatives NdtObjective::evaluate(const SourcePoints& source, const Eigen::Isometry3d& T_map_source, int threads,
                                       Workspace& workspace, std::size_t stride) const {
   NdtDerivatives total;
-  const double farthest = (T_map_source.translation() / level_.resolution()).cwiseAbs().maxCoeff();
-  if (!(farthest < kFarthestVoxel) || !T_map_source.linear().allFinite()) return total;
+  if (!VoxelPairs::reachable(level_, T_map_source)) return total;
 
   using Block = void (NdtObjective::*)(const SourcePoints&, const Eigen::Isometry3d&, std::size_t, std::size_t,
                                        std::size_t, NdtDerivatives&) const;

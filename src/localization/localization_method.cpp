@@ -1,0 +1,49 @@
+#include "saw_ndt/localization/localization_method.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "saw_ndt/common/error.h"
+
+namespace saw_ndt {
+namespace {
+
+const std::vector<LocalizationMethod>& methods() {
+  static const std::vector<LocalizationMethod> all = {
+      {"weighted", true, 0.5, true, ConfidenceOptions(), 0.5},
+      {"weighted-s50", true, 0.5, true, ConfidenceOptions::paper(), 0.1},
+      {"weighted-s100", true, 1.0, true, ConfidenceOptions::paper(), 0.1},
+      {"unweighted-s50", true, 0.5, false, ConfidenceOptions::paper(), 0.1},
+      {"classical", false, 1.0, false, ConfidenceOptions::uniform(), 0.1},
+  };
+  return all;
+}
+
+}  // namespace
+
+void LocalizationMethod::check() const {
+  checkOption(ground_ratio >= 0.0 && ground_ratio <= 1.0, "ground_ratio", ground_ratio, "between 0 and 1");
+  checkOption(mismatch_penalty >= 0.0 && mismatch_penalty <= 1.0, "mismatch_penalty", mismatch_penalty,
+              "between 0 and 1");
+  confidence.check();
+}
+
+const std::vector<std::string>& LocalizationMethod::names() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> result;
+    for (const LocalizationMethod& method : methods()) result.push_back(method.name);
+    return result;
+  }();
+  return all;
+}
+
+LocalizationMethod LocalizationMethod::named(const std::string& name) {
+  const auto found = std::find_if(methods().begin(), methods().end(),
+                                  [&name](const LocalizationMethod& method) { return method.name == name; });
+  if (found != methods().end()) return *found;
+  std::string message = "method = " + name + ": must be one of";
+  for (const std::string& known : names()) message += " " + known;
+  throw std::invalid_argument(message);
+}
+
+}  // namespace saw_ndt

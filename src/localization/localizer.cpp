@@ -1,0 +1,157 @@
+#include "saw_ndt/localization/localizer.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/common/threads.h"
+#include "saw_ndt/segmentation/ground_subsampling.h"
+
+namespace saw_ndt {
+namespace {
+
+class Stopwatch {
+ public:
+  double milliseconds() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+bool sameConfidences(const ConfidenceOptions& a, const ConfidenceOptions& b) {
+  return a.noise == b.noise && a.ground == b.ground && a.non_ground == b.non_ground;
+}
+
+Matrix6d inverseOrZero(const Matrix6d& information) {
+  const Eigen::FullPivLU<Matrix6d> decomposition(information);
+  return decomposition.isInvertible() ? Matrix6d(decomposition.inverse()) : Matrix6d(Matrix6d::Zero());
+}
+
+}  // namespace
+
+void AcceptanceOptions::check() const {
+  checkOption(min_likelihood >= 0.0, "min_likelihood", min_likelihood, "0 or more");
+  checkOption(max_correction_m > 0.0, "max_correction_m", max_correction_m, "positive");
+  checkOption(max_correction_deg > 0.0, "max_correction_deg", max_correction_deg, "positive");
+  checkOption(max_unknown_speed_mps >= 0.0, "max_unknown_speed_mps", max_unknown_speed_mps, "0 or more");
+}
+
+void LocalizerOptions::check() const {
+  method.check();
+  segmentation.check();
+  prediction.check();
+  alignment.check();
+  acceptance.check();
+  if (!T_base_lidar.matrix().allFinite()) throw std::invalid_argument("T_base_lidar: must be finite");
+}
+
+const char* toString(Acceptance acceptance) {
+  switch (acceptance) {
+    case Acceptance::ACCEPTED:
+      return "accepted";
+    case Acceptance::NOT_CONVERGED:
+      return "not converged";
+    case Acceptance::LOW_LIKELIHOOD:
+      return "low likelihood";
+    case Acceptance::LARGE_TRANSLATION:
+      return "large translation";
+    case Acceptance::LARGE_ROTATION:
+      return "large rotation";
+  }
+  return "unknown";
+}
+
+Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options)
+    : map_(std::move(map)),
+      options_((options.check(), options)),
+      segmenter_(options.segmentation),
+      filter_(options.source_voxel_size_m),
+      prediction_(options.prediction) {
+  if (!map_) throw std::invalid_argument("Localizer: the map is a null pointer");
+  if (!sameConfidences(map_->weighting().confidence, options_.method.confidence)) {
+    throw std::invalid_argument("Localizer: the map was read with other confidences than those of method " +
+                                options_.method.name);
+  }
+  if (options_.method.segment && !map_->labelled()) {
+    throw std::invalid_argument("Localizer: method " + options_.method.name +
+                                " needs a map with labels, and this one was built without");
+  }
+  options_.alignment.use_weights = options_.method.use_weights;
+  options_.alignment.mismatch_penalty = options_.method.mismatch_penalty;
+}
+
+const SourcePoints& Localizer::makeSource(const ScanView& scan, StageTimes& times) {
+  const LocalizationMethod& method = options_.method;
+  if (method.segment) {
+    const Stopwatch stopwatch;
+    segmenter_.segment(scan, labels_);
+    times.segment_ms = stopwatch.milliseconds();
+  } else {
+    labels_.assign(scan.size, StructuralLabel::NonGround);
+  }
+
+  const Stopwatch stopwatch;
+  const Eigen::Isometry3f T_base_lidar = options_.T_base_lidar.cast<float>();
+  filter_.start(method.segment);
+  GroundSampler ground_sampler({method.ground_ratio});
+  for (std::size_t i = 0; i < scan.size; ++i) {
+    const StructuralLabel label = labels_[i];
+    if (method.confidence.of(label) <= 0.0) continue;
+    if (label == StructuralLabel::Ground && !ground_sampler.keepsNext()) continue;
+    filter_.add(T_base_lidar * Eigen::Map<const Eigen::Vector3f>(scan.point(i)), label);
+  }
+  const SourcePoints& source = filter_.finish();
+  times.filter_ms = stopwatch.milliseconds();
+  return source;
+}
+
+Acceptance Localizer::judge(const LocalizationResult& result) const {
+  const AcceptanceOptions& limits = options_.acceptance;
+  double max_correction_m = limits.max_correction_m;
+  if (!prediction_.velocityKnown()) {
+    const double elapsed_s = std::max(0.0, prediction_.timeSinceLast(result.stamp_s).value_or(0.0));
+    max_correction_m = std::max(max_correction_m, limits.max_unknown_speed_mps * elapsed_s);
+  }
+  if (!result.alignment.converged()) return Acceptance::NOT_CONVERGED;
+  if (!(result.likelihoods.unweighted >= limits.min_likelihood)) return Acceptance::LOW_LIKELIHOOD;
+  if (!(result.correction_m <= max_correction_m)) return Acceptance::LARGE_TRANSLATION;
+  if (!(degreesFromRadians(result.correction_rad) <= limits.max_correction_deg)) return Acceptance::LARGE_ROTATION;
+  return Acceptance::ACCEPTED;
+}
+
+LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
+  const Stopwatch total;
+  LocalizationResult result;
+  result.stamp_s = stamp_s;
+  const SourcePoints& source = makeSource(scan, result.times);
+  result.source_points = source.size();
+
+  const Stopwatch alignment;
+  result.T_map_base_predicted = prediction_.predict(stamp_s);
+  result.alignment = aligner_.align(*map_, source, result.T_map_base_predicted, options_.alignment);
+  result.times.align_ms = alignment.milliseconds();
+
+  const Eigen::Isometry3d& T_map_aligned = result.alignment.T_map_source;
+  const Eigen::Isometry3d T_predicted_aligned = result.T_map_base_predicted.inverse() * T_map_aligned;
+  result.correction_m = T_predicted_aligned.translation().norm();
+  result.correction_rad = rotationAngle(T_predicted_aligned.linear());
+  result.likelihoods = evaluateLikelihoods(map_->fine(), source, T_map_aligned, options_.alignment.outlier_ratio,
+                                           threadCount(options_.alignment.threads));
+  result.acceptance = judge(result);
+  if (result.accepted()) {
+    result.T_map_base = T_map_aligned;
+    result.covariance = inverseOrZero(result.alignment.information);
+    prediction_.accept(T_map_aligned, stamp_s);
+  } else {
+    result.T_map_base = result.T_map_base_predicted;
+  }
+  result.times.total_ms = total.milliseconds();
+  return result;
+}
+
+}  // namespace saw_ndt
