@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "real_data.h"
+#include "run_app_program.h"
+#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/io/trajectory.h"
+
+namespace saw_ndt {
+namespace {
+
+class EvaluateApp : public ::testing::Test {
+ protected:
+  AppResult run(const std::string& arguments) const { return runAppProgram(SAW_NDT_APP, "-threads 1 " + arguments); }
+  std::string file(const std::string& name, const std::string& content) const {
+    return "'" + folder.write(name, content).string() + "' ";
+  }
+
+  TemporaryFolder folder;
+  // Three poses along x; the estimate is 3 and 5 m off, the last one also 90 degrees of yaw.
+  std::string tum_reference = file("ref.tum", "0 0 0 0 0 0 0 1\n4 1 0 0 0 0 0 1\n5 2 0 0 0 0 0 1\n");
+  std::string tum_estimate =
+      file("est.tum", "0 9 9 0 0 0 0 1\n4 1 3 0 0 0 0 1\n5 6 3 0 0 0 0.70710678118655 0.70710678118655\n");
+  // The same as poses of a camera: x right, y down, z forward; the LiDAR's x is the camera's z.
+  std::string kitti_reference =
+      file("ref.kitti", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1\n1 0 0 0 0 1 0 0 0 0 1 2\n");
+  std::string kitti_estimate =
+      file("est.kitti", "1 0 0 -9 0 1 0 0 0 0 1 9\n1 0 0 -3 0 1 0 0 0 0 1 1\n0 0 -1 -3 0 1 0 0 1 0 0 6\n");
+  std::string times = "-times " + file("times.txt", "0\n4\n5\n");
+  std::string calib = "-calib " + file("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
+};
+
+TEST_F(EvaluateApp, KnownErrors) {
+  for (const std::string& files :
+       {tum_reference + tum_estimate, kitti_reference + kitti_estimate + times,
+        kitti_reference + kitti_estimate + times + calib, kitti_reference + tum_estimate + times + calib,
+        tum_reference + kitti_estimate + times + calib}) {
+    SCOPED_TRACE(files);
+    const AppResult result = run(files + "-json");
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const auto report = nlohmann::json::parse(result.output);
+    EXPECT_EQ(report.at("evaluated_scans"), 2);
+    EXPECT_NEAR(report.at("ate_rmse_m").get<double>(), std::sqrt(17.0), 1e-9);
+    EXPECT_NEAR(report.at("position_p95_m").get<double>(), 4.9, 1e-9);
+    EXPECT_NEAR(report.at("position_max_m").get<double>(), 5.0, 1e-9);
+    EXPECT_NEAR(report.at("yaw_mae_deg").get<double>(), 45.0, 1e-9);
+    EXPECT_NEAR(report.at("yaw_p95_deg").get<double>(), 85.5, 1e-9);
+  }
+}
+
+TEST_F(EvaluateApp, PrintsText) {
+  const AppResult result = run(tum_reference + tum_estimate);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("evaluated_scans           2\n"), std::string::npos) << result.output;
+}
+
+TEST_F(EvaluateApp, KittiFilesAloneAreComparedLineByLine) {
+  const AppResult result = run(kitti_reference + kitti_estimate + "-json -skip 0.1");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(nlohmann::json::parse(result.output).at("evaluated_scans"), 2);
+}
+
+TEST_F(EvaluateApp, SaysWhatIsWrong) {
+  const std::string shorter = file("short.kitti", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  const struct {
+    std::string arguments;
+    int exit_code;
+    std::string reason;
+  } cases[] = {
+      {tum_reference, 2, "missing ESTIMATE"},
+      {tum_reference + tum_estimate + "-skip -1", 2, "-skip"},
+      {kitti_reference + tum_estimate, 2, "-times FILE"},
+      {kitti_reference + tum_estimate + times, 2, "-calib FILE"},
+      {kitti_reference + shorter, 1, "short.kitti: 1 poses, where"},
+      {kitti_reference + kitti_estimate + "-times " + file("two.txt", "0\n1\n"), 1, "two.txt: 2 times"},
+      {tum_reference + tum_estimate + "-skip 100", 1, "within the first 100 s"},
+      {tum_reference + "none.tum", 1, "none.tum: No such file"},
+      {tum_reference + file("bad.tum", "0 0 0 0 0 0 0 1\n1 2\n"), 1, "bad.tum: line 2"},
+  };
+  for (const auto& c : cases) {
+    const AppResult result = run(c.arguments);
+    EXPECT_EQ(result.exit_code, c.exit_code) << c.arguments;
+    EXPECT_NE(result.errors.find(c.reason), std::string::npos) << result.errors;
+    EXPECT_EQ(result.output, "");
+  }
+}
+
+TEST_F(EvaluateApp, AFullDiskIsAFailure) {
+  const AppResult result = runAppProgram(SAW_NDT_APP, tum_reference + tum_estimate, "/dev/full");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.errors.find("standard output"), std::string::npos) << result.errors;
+}
+
+TEST_F(EvaluateApp, RealReferenceInBothFormatsAgrees) {
+  const std::filesystem::path kitti = realDataFolder() / "kitti";
+  if (!std::filesystem::exists(kitti)) GTEST_SKIP() << "no real data at " << kitti;
+  const KittiSequence sequence(kitti / "sequences" / "drive_0005");
+  const std::vector<double> stamps_s = sequence.stamps();
+  const std::vector<Eigen::Isometry3d> poses = sequence.posesLidar();
+  std::vector<StampedPose> odd_scans;
+  for (std::size_t i = 1; i < poses.size(); i += 2) odd_scans.push_back({stamps_s[i], poses[i]});
+  const auto estimate = folder.path() / "odd.txt";
+  writeTumTrajectory(estimate, odd_scans);
+  const AppResult result =
+      run("'" + sequence.posesFile().string() + "' '" + estimate.string() + "' -json -times '" +
+          (sequence.folder() / "times.txt").string() + "' -calib '" + (sequence.folder() / "calib.txt").string() + "'");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto report = nlohmann::json::parse(result.output);
+  EXPECT_EQ(report.at("evaluated_scans"), 20);
+  EXPECT_LT(report.at("position_max_m").get<double>(), 1e-6);
+  EXPECT_LT(report.at("yaw_p95_deg").get<double>(), 1e-6);
+}
+
+}  // namespace
+}  // namespace saw_ndt
