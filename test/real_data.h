@@ -3,10 +3,16 @@
 #include <cstdlib>
 #include <filesystem>
 
-/// The folder of real recordings that tests may use: the environment's SAW_NDT_DATA, else `../shared/data` beside the
-/// project. It may be absent: a test that needs it skips then, and says so.
+namespace saw_ndt {
+
+/// The folder of the real scans, which are no part of the project: the environment variable SAW_NDT_DATA, or else
+/// `../shared/data` beside the project. Empty where it is not there: the test then skips itself and says so.
 inline std::filesystem::path realDataFolder() {
-  const char* folder = std::getenv("SAW_NDT_DATA");
-  return folder != nullptr ? std::filesystem::path(folder)
-                           : std::filesystem::path(SAW_NDT_SOURCE_DIR) / ".." / "shared" / "data";
+  const char* stated = std::getenv("SAW_NDT_DATA");
+  const std::filesystem::path folder = stated != nullptr
+                                           ? std::filesystem::path(stated)
+                                           : std::filesystem::path(SAW_NDT_SOURCE_DIR) / ".." / "shared" / "data";
+  return std::filesystem::is_directory(folder / "kitti" / "sequences") ? folder : std::filesystem::path();
 }
+
+}  // namespace saw_ndt

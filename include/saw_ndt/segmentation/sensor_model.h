@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace saw_ndt {
+
+/// The scan pattern of a spinning LiDAR: how a range image of its scans is laid out.
+struct SensorModel {
+  /// How error messages call it.
+  std::string name;
+  /// Width of the range image: pixels per revolution.
+  int columns = 0;
+  /// Elevation of every beam in degrees, top row first, strictly decreasing.
+  std::vector<double> elevations_deg;
+
+  /// Height of the range image: one row per beam.
+  int rows() const { return static_cast<int>(elevations_deg.size()); }
+
+  /// Throws std::invalid_argument that names the field unless: 1 to 1024 rows, 8 to 16384 columns, elevations within
+  /// (-90, 90) degrees and strictly decreasing.
+  void check() const;
+
+  /// The model of that name: "HDL-64E", "HDL-32E", "VLP-16", "OS-64" or "OS-128" (Ouster OS1, 45 degrees field of
+  /// view). Any other name throws std::invalid_argument that lists the known ones.
+  static SensorModel named(const std::string& name);
+
+  /// The names that named() knows.
+  static std::vector<std::string> names();
+
+  /// A sensor whose beams are evenly spaced from `top_deg` down to `bottom_deg`, both included; checked.
+  static SensorModel evenlySpaced(const std::string& name, int rows, int columns, double top_deg, double bottom_deg);
+};
+
+}  // namespace saw_ndt

@@ -1,0 +1,258 @@
+#include "saw_ndt/segmentation/scan_segmenter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "segmentation/synthetic_scan.h"
+
+namespace saw_ndt {
+namespace {
+
+// One degree between rows, half a degree between columns; row 6 looks level ahead.
+SensorModel testSensor() { return SensorModel::evenlySpaced("test", 32, 720, 6.0, -25.0); }
+
+constexpr double kWallDistance = 8.2;
+constexpr int kFirstWallColumn = 100;
+constexpr int kEndWallColumn = 140;
+constexpr int kWallBottomRow = 17;  // -11 degrees: the first beam above the foot of the wall
+constexpr int kWallTopRow = 3;
+constexpr int kSpeckleRow = 2;
+constexpr int kSpeckleColumn = 300;
+
+bool isWall(int row, int column) {
+  return column >= kFirstWallColumn && column < kEndWallColumn && row >= kWallTopRow && row <= kWallBottomRow;
+}
+
+// Flat ground, a wall that stands on it, and one return in the sky.
+double sceneRange(int row, int column) {
+  const SensorModel sensor = testSensor();
+  if (row == kSpeckleRow && column == kSpeckleColumn) return 5.0;
+  if (isWall(row, column)) return kWallDistance / std::cos(radiansFromDegrees(sensor.elevations_deg[row]));
+  return rangeToFlatGround(sensor, row, 40.0);
+}
+
+StructuralLabel sceneLabel(int row, int column) {
+  if (!std::isfinite(sceneRange(row, column))) return StructuralLabel::Noise;
+  if (row == kSpeckleRow && column == kSpeckleColumn) return StructuralLabel::Noise;
+  return isWall(row, column) ? StructuralLabel::NonGround : StructuralLabel::Ground;
+}
+
+SegmentationOptions testOptions(GroundRule rule) {
+  SegmentationOptions options;
+  options.sensor = testSensor();
+  options.ground.rule = rule;
+  return options;
+}
+
+void expectSceneLabels(const pcl::PointCloud<pcl::PointXYZ>& scan, const std::vector<StructuralLabel>& labels) {
+  const int columns = testSensor().columns;
+  ASSERT_EQ(labels.size(), scan.size());
+  for (int i = 0; i < static_cast<int>(labels.size()); ++i) {
+    ASSERT_EQ(labels[i], sceneLabel(i / columns, i % columns)) << "row " << i / columns << " column " << i % columns;
+  }
+}
+
+class BothRules : public ::testing::TestWithParam<GroundRule> {};
+
+TEST_P(BothRules, PlaneWallAndSpeckleAreToldApart) {
+  const auto scan = organizedScan(testSensor(), sceneRange);
+  ScanSegmenter segmenter(testOptions(GetParam()));
+  std::vector<StructuralLabel> labels;
+  segmenter.segment(viewOf(scan), labels);
+  expectSceneLabels(scan, labels);
+}
+
+TEST_P(BothRules, NothingOfAnEarlierScanStays) {
+  const auto scan = organizedScan(testSensor(), sceneRange);
+  const auto other = organizedScan(testSensor(), [](int row, int column) { return 3.0 + 0.3 * ((row + column) % 5); });
+  ScanSegmenter segmenter(testOptions(GetParam()));
+  std::vector<StructuralLabel> labels;
+  segmenter.segment(viewOf(other), labels);
+  segmenter.segment(ScanView(), labels);
+  EXPECT_TRUE(labels.empty());
+  segmenter.segment(viewOf(scan), labels);
+  expectSceneLabels(scan, labels);
+}
+
+TEST_P(BothRules, EveryReturnOfAPixelHasItsLabel) {
+  const auto scan = organizedScan(testSensor(), sceneRange);
+  const int columns = testSensor().columns;
+  pcl::PointCloud<pcl::PointXYZ> twice;
+  for (const auto& point : scan) {
+    for (const double turn : {-0.002, 0.002}) {
+      pcl::PointXYZ turned = point;
+      turned.x = static_cast<float>(std::cos(turn) * point.x - std::sin(turn) * point.y);
+      turned.y = static_cast<float>(std::sin(turn) * point.x + std::cos(turn) * point.y);
+      twice.push_back(turned);
+    }
+  }
+  twice.width = static_cast<std::uint32_t>(2 * columns);
+  twice.height = scan.height;
+  ScanSegmenter segmenter(testOptions(GetParam()));
+  std::vector<StructuralLabel> labels;
+  segmenter.segment(viewOf(twice), labels);
+  for (int i = 0; i < static_cast<int>(labels.size()); ++i) {
+    const int pixel = i / 2;
+    ASSERT_EQ(labels[i], sceneLabel(pixel / columns, pixel % columns)) << pixel;
+  }
+}
+
+TEST_P(BothRules, CloudsWithoutScanPatternAreLabelledToo) {
+  for (const std::size_t size : {std::size_t{1}, std::size_t{3}, std::size_t{5000}}) {
+    pcl::PointCloud<pcl::PointXYZ> cloud;
+    std::uint32_t state = 12345;
+    const auto random = [&state] {
+      state = state * 1664525U + 1013904223U;
+      return static_cast<float>(state >> 8) / 8388608.0F - 1.0F;
+    };
+    for (std::size_t i = 0; i < size; ++i) cloud.push_back(pcl::PointXYZ(30 * random(), 30 * random(), 3 * random()));
+    ScanSegmenter segmenter(testOptions(GetParam()));
+    std::vector<StructuralLabel> first;
+    std::vector<StructuralLabel> second;
+    segmenter.segment(viewOf(cloud), first);
+    segmenter.segment(viewOf(cloud), second);
+    EXPECT_EQ(first.size(), size);
+    EXPECT_EQ(first, second);
+  }
+}
+
+TEST_P(BothRules, PointsThatAreNotFiniteAreNoise) {
+  auto scan = organizedScan(testSensor(), sceneRange);
+  for (std::size_t i = 0; i < scan.size(); i += 3) scan[i].z = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 1; i < scan.size(); i += 3) scan[i].x = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 2; i < scan.size(); i += 3) scan[i] = pcl::PointXYZ(0.0F, 0.0F, 0.0F);
+  ScanSegmenter segmenter(testOptions(GetParam()));
+  std::vector<StructuralLabel> labels;
+  segmenter.segment(viewOf(scan), labels);
+  EXPECT_EQ(std::count(labels.begin(), labels.end(), StructuralLabel::Noise),
+            static_cast<std::ptrdiff_t>(labels.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(ScanSegmenter, BothRules, ::testing::Values(GroundRule::Inclination, GroundRule::Growing),
+                         [](const ::testing::TestParamInfo<GroundRule>& tested) {
+                           return tested.param == GroundRule::Growing ? "Growing" : "Inclination";
+                         });
+
+// Labels of a wall of the given rows and columns, alone in the sky.
+std::vector<StructuralLabel> labelsOfPatch(int first_row, int rows, int first_column, int columns) {
+  const SensorModel sensor = testSensor();
+  const auto scan = organizedScan(sensor, [&](int row, int column) {
+    const int shifted = (column - first_column + sensor.columns) % sensor.columns;
+    return row >= first_row && row < first_row + rows && shifted < columns ? 10.0 : kNoReturn;
+  });
+  SegmentationOptions options = testOptions(GroundRule::Inclination);
+  ScanSegmenter segmenter(options);
+  std::vector<StructuralLabel> labels;
+  segmenter.segment(viewOf(scan), labels);
+  return labels;
+}
+
+std::ptrdiff_t nonGround(const std::vector<StructuralLabel>& labels) {
+  return std::count(labels.begin(), labels.end(), StructuralLabel::NonGround);
+}
+
+TEST(ComponentFilter, SizeAndRingsDecide) {
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 1, 10, 29)), 0);
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 1, 10, 30)), 30);
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 2, 10, 14)), 0);
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 2, 10, 15)), 30);
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 4, 10, 1)), 0);
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 5, 10, 1)), 5);
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 3, 10, 2)), 6);
+}
+
+TEST(ComponentFilter, ComponentsGoOnOverTheSeam) {
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 1, 700, 40)), 40);  // 20 pixels either side
+  EXPECT_EQ(nonGround(labelsOfPatch(1, 1, 710, 29)), 0);
+}
+
+TEST(ComponentFilter, AStepInRangeSeparates) {
+  const SensorModel sensor = testSensor();
+  const auto scan = organizedScan(sensor, [](int row, int column) {
+    if (row != 2 || column < 10 || column >= 50) return kNoReturn;
+    return column < 30 ? 10.0 : 11.0;
+  });
+  ScanSegmenter segmenter(testOptions(GroundRule::Growing));
+  std::vector<StructuralLabel> labels;
+  segmenter.segment(viewOf(scan), labels);
+  EXPECT_EQ(nonGround(labels), 0);
+}
+
+TEST(GroundDetection, GroundGoesOnBehindAnObstacleAndUphill) {
+  const SensorModel sensor = testSensor();
+  const double slope = std::tan(radiansFromDegrees(4.0));
+  const auto range_at = [&](int row, int column) {
+    if (row >= 17 && row <= 18) return kNoReturn;  // two rings without returns
+    const double elevation = radiansFromDegrees(sensor.elevations_deg[row]);
+    if (column < 60 && row <= 20 && row >= 19) return 6.0 / std::cos(elevation) - 0.2;  // low box
+    const double level = kSensorHeight / (slope - std::tan(elevation));
+    return level > 0.0 && level < 50.0 ? level / std::cos(elevation) : kNoReturn;
+  };
+  ScanSegmenter segmenter(testOptions(GroundRule::Growing));
+  std::vector<StructuralLabel> labels;
+  segmenter.segment(viewOf(organizedScan(sensor, range_at)), labels);
+  for (int row = 0; row < sensor.rows(); ++row) {
+    for (int column = 70; column < 700; ++column) {
+      if (!std::isfinite(range_at(row, column))) continue;
+      ASSERT_EQ(labels[row * sensor.columns + column], StructuralLabel::Ground) << row << " " << column;
+    }
+    for (int column = 5; column < 55; ++column) {
+      if (row >= 17 || !std::isfinite(range_at(row, column))) continue;
+      ASSERT_EQ(labels[row * sensor.columns + column], StructuralLabel::Ground) << row << " " << column;
+    }
+  }
+}
+
+TEST(GroundDetection, MountingPitchIsTakenOut) {
+  for (const GroundRule rule : {GroundRule::Inclination, GroundRule::Growing}) {
+    const SensorModel sensor = testSensor();
+    SegmentationOptions options = testOptions(rule);
+    options.mounting_pitch_deg = 15.0;
+    options.ground.inclination_top_elevation_deg = 6.0;
+    const double pitch = radiansFromDegrees(options.mounting_pitch_deg);
+    const auto range_at = [&](int row, int column) {
+      const double elevation = radiansFromDegrees(sensor.elevations_deg[row]);
+      const double azimuth = (column + 0.5) * 2.0 * kPi / sensor.columns;
+      const double down =
+          std::sin(pitch) * std::cos(elevation) * std::cos(azimuth) - std::cos(pitch) * std::sin(elevation);
+      return down > 0.05 ? kSensorHeight / down : kNoReturn;
+    };
+    const auto scan = organizedScan(sensor, range_at);
+    ScanSegmenter segmenter(options);
+    std::vector<StructuralLabel> labels;
+    segmenter.segment(viewOf(scan), labels);
+    std::size_t returns = 0;
+    for (const auto& point : scan) returns += std::isfinite(point.x) ? 1U : 0U;
+    const auto ground = static_cast<double>(std::count(labels.begin(), labels.end(), StructuralLabel::Ground));
+    EXPECT_GT(ground, 0.99 * static_cast<double>(returns));
+  }
+}
+
+TEST(SegmentationOptions, NamesTheFieldThatIsWrong) {
+  const auto expectNamed = [](const SegmentationOptions& options, const std::string& field) {
+    try {
+      ScanSegmenter segmenter(options);
+      FAIL() << field;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(field, 0), 0U) << error.what();
+    }
+  };
+  SegmentationOptions options;
+  options.mounting_pitch_deg = 91.0;
+  expectNamed(options, "mounting_pitch_deg");
+  options = SegmentationOptions();
+  options.ground.step_tolerance_m = -1.0;
+  expectNamed(options, "step_tolerance_m");
+  options = SegmentationOptions();
+  options.components.minimum_pixels = 0;
+  expectNamed(options, "minimum_pixels");
+  options = SegmentationOptions();
+  options.ground.inclination_limit_deg = std::numeric_limits<double>::quiet_NaN();
+  expectNamed(options, "inclination_limit_deg");
+}
+
+}  // namespace
+}  // namespace saw_ndt
