@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace saw_ndt {
+
+/// A folder for an app's results. It is made, and found writable, before the work begins; if the work then fails, a
+/// folder that was made here goes away again.
+class OutputFolder {
+ public:
+  /// @throws Error that names the folder and the reason
+  explicit OutputFolder(const std::string& path);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// The results are complete: the folder stays.
+  void keep() { kept_ = true; }
+
+ private:
+  std::filesystem::path path_;
+  bool made_ = false;
+  bool kept_ = false;
+};
+
+}  // namespace saw_ndt

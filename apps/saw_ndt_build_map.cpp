@@ -1,0 +1,50 @@
+#include <iostream>
+
+#include "app_options.h"
+#include "progress_bar.h"
+#include "saw_ndt/io/scan_selection.h"
+#include "saw_ndt/map/sequence_map.h"
+#include "segmentation_options.h"
+
+namespace {
+
+constexpr char kDescription[] =
+    "Builds an NDT map from the scans of a drive and their reference poses. Scans are segmented and the map keeps the "
+    "sums of ground, non-ground and noise points of every voxel apart, so that one map serves every method of "
+    "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. The same scans "
+    "give the same bytes, in any order and with any number of threads.";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string sequence_folder, map_file, poses_file, scans = ":";
+  bool classical = false;
+  saw_ndt::SequenceMapOptions options;
+  saw_ndt::SegmentationArguments segmentation;
+  saw_ndt::AppOptions app("saw_ndt_build_map", kDescription);
+  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout");
+  app.addPositional("MAP", &map_file, "map file to write");
+  app.addOption("resolution", &options.resolution_m, "METRES", "edge of a voxel");
+  app.addOption("scans", &scans, "SLICE", "scans to use, first:last:step as in Python");
+  app.addOption("poses", &poses_file, "FILE",
+                "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
+  app.addFlag("classical", &classical, "raw points, no labels");
+  segmentation.addTo(app);
+
+  return saw_ndt::runApp(argc, argv, app, [&] {
+    const saw_ndt::KittiSequence sequence(sequence_folder, poses_file);
+    const std::vector<int> selected =
+        saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, sequence.scanCount()); });
+    options.threads = app.threads();
+    options.segmentation = segmentation.options();
+    if (classical) options.segmentation.reset();
+    saw_ndt::checkedUsage([&] { return saw_ndt::WeightedMapBuilder(options.resolution_m); });
+
+    saw_ndt::ProgressBar progress(selected.size());
+    const saw_ndt::WeightedVoxelMap map =
+        saw_ndt::buildSequenceMap(sequence, selected, options, [&] { progress.step(); }).build();
+    map.save(map_file);
+    std::cout << map_file << ": " << map.fine().size() << " voxels of " << map.resolution() << " m from "
+              << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";
+  });
+}

@@ -1,0 +1,97 @@
+#include <iostream>
+
+#include "app_options.h"
+#include "output_folder.h"
+#include "progress_bar.h"
+#include "saw_ndt/common/geometry.h"
+#include "saw_ndt/evaluation/sequence_localization.h"
+#include "saw_ndt/io/scan_selection.h"
+#include "segmentation_options.h"
+
+namespace {
+
+constexpr char kDescription[] =
+    "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
+    "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
+    "is printed too. A scan that is rejected keeps the pose that was predicted for it. Scans are segmented with the same "
+    "options as those of the map. Where reference poses exist, the first one is the initial pose and the others tell "
+    "the errors.";
+
+Eigen::Isometry3d transformOf(const std::vector<double>& xyz_rpy_deg) {
+  saw_ndt::Vector6d values;
+  for (int i = 0; i < 6; ++i) {
+    values[i] = i < 3 ? xyz_rpy_deg[static_cast<std::size_t>(i)]
+                      : saw_ndt::radiansFromDegrees(xyz_rpy_deg[static_cast<std::size_t>(i)]);
+  }
+  return saw_ndt::transformFromXyzRpy(values);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string sequence_folder, map_file, out_dir, poses_file, scans = ":";
+  double skip_s = 3.0;
+  std::vector<double> initial_pose(6, 0.0), base_lidar(6, 0.0);
+  saw_ndt::LocalizerOptions options;
+  saw_ndt::SegmentationArguments segmentation;
+  std::string method = options.method.name;
+  saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
+  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout");
+  app.addPositional("MAP", &map_file, "map file of saw_ndt_build_map");
+  app.addPositional("OUT_DIR", &out_dir, "folder for the results, made where it is missing");
+  app.addChoice("method", &method, saw_ndt::LocalizationMethod::names(),
+                "weighted is this project's, the others are the paper's");
+  app.addOption("scans", &scans, "SLICE", "scans to localize, first:last:step as in Python");
+  app.addOption("skip", &skip_s, "SECONDS", "time at the start that the errors leave out");
+  app.addOption("poses", &poses_file, "FILE",
+                "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
+  app.addOption("initial-pose", &initial_pose, "X,Y,Z,ROLL,PITCH,YAW",
+                "pose of the base at the first scan, metres and degrees (default: its reference pose)");
+  app.addOption("base-lidar", &base_lidar, "X,Y,Z,ROLL,PITCH,YAW", "pose of the LiDAR on the base, metres and degrees");
+  app.addOption("source-voxel", &options.source_voxel_size_m, "METRES", "edge of a source voxel, 0 for none");
+  app.addOption("max-iterations", &options.alignment.max_iterations, "N", "steps of an alignment at most");
+  app.addOption("min-likelihood", &options.acceptance.min_likelihood, "X",
+                "a scan below this unweighted likelihood is rejected");
+  app.addOption("max-correction", &options.acceptance.max_correction_m, "METRES",
+                "a scan corrected by more than this is rejected");
+  app.addOption("max-correction_deg", &options.acceptance.max_correction_deg, "DEGREES",
+                "a scan corrected by more than this is rejected");
+  segmentation.addTo(app);
+
+  return saw_ndt::runApp(argc, argv, app, [&] {
+    if (skip_s < 0.0) throw saw_ndt::UsageError("option -skip: must be 0 or greater");
+    options.method = saw_ndt::LocalizationMethod::named(method);
+    options.segmentation = segmentation.options();
+    options.alignment.threads = app.threads();
+    options.T_base_lidar = transformOf(base_lidar);
+    saw_ndt::checkedUsage([&] { options.check(); });
+    const saw_ndt::KittiSequence sequence(sequence_folder, poses_file);
+    const std::vector<int> selected =
+        saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, sequence.scanCount()); });
+    const std::vector<double> stamps_s = sequence.stamps();
+    std::vector<Eigen::Isometry3d> reference_lidar;
+    if (sequence.hasPoses()) reference_lidar = sequence.posesLidar();
+    if (reference_lidar.empty() && !app.isGiven("initial-pose")) {
+      throw saw_ndt::UsageError("the drive has no reference poses: option -initial-pose is needed");
+    }
+
+    saw_ndt::VoxelWeighting weighting;
+    weighting.confidence = options.method.confidence;
+    saw_ndt::Localizer localizer(
+        std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(map_file, weighting)), options);
+    localizer.setInitialPose(app.isGiven("initial-pose")
+                                 ? transformOf(initial_pose)
+                                 : reference_lidar[static_cast<std::size_t>(selected.front())] *
+                                       options.T_base_lidar.inverse());
+
+    saw_ndt::OutputFolder folder(out_dir);
+    saw_ndt::ProgressBar progress(selected.size());
+    const saw_ndt::SequenceLocalization run =
+        saw_ndt::localizeSequence(localizer, sequence, selected, [&] { progress.step(); });
+    const saw_ndt::LocalizationSummary summary =
+        saw_ndt::summarize(run, localizer.options(), reference_lidar, stamps_s, skip_s);
+    saw_ndt::writeLocalization(folder.path(), run, summary, options.T_base_lidar, sequence.T_camera_lidar());
+    folder.keep();
+    std::cout << saw_ndt::toJsonText(summary);
+  });
+}

@@ -1,0 +1,22 @@
+#include "segmentation_options.h"
+
+namespace saw_ndt {
+
+void SegmentationArguments::addTo(AppOptions& app) {
+  app.addChoice("sensor", &sensor_, SensorModel::names(), "beams and image width of the LiDAR");
+  app.addChoice("ground-rule", &ground_rule_, {"growing", "inclination"},
+                "how ground is told: grown outward column by column, or by the paper's inclination between neighbours");
+  app.addOption("mounting-pitch_deg", &mounting_pitch_deg_, "DEGREES",
+                "angle by which the LiDAR's x axis points below the horizon");
+}
+
+SegmentationOptions SegmentationArguments::options() const {
+  SegmentationOptions options;
+  options.sensor = SensorModel::named(sensor_);
+  options.ground.rule = ground_rule_ == "growing" ? GroundRule::Growing : GroundRule::Inclination;
+  options.mounting_pitch_deg = mounting_pitch_deg_;
+  checkedUsage([&] { options.check(); });
+  return options;
+}
+
+}  // namespace saw_ndt

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <pcl/point_cloud.h>
+
+#include "saw_ndt/segmentation/scan_view.h"
+
+namespace saw_ndt {
+
+/// A view of a cloud whose points begin with x, y, z as all of PCL's do; without ring numbers.
+template <typename PointT>
+ScanView viewOf(const pcl::PointCloud<PointT>& cloud) {
+  ScanView view;
+  view.xyz = cloud.empty() ? nullptr : cloud.front().data;
+  view.stride = sizeof(PointT) / sizeof(float);
+  view.size = cloud.size();
+  view.width = cloud.width;
+  view.height = cloud.height;
+  return view;
+}
+
+}  // namespace saw_ndt
