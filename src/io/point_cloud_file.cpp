@@ -6,6 +6,7 @@
 #include <pcl/io/pcd_io.h>
 
 #include <algorithm>
+#include <new>
 #include <type_traits>
 
 #include "pcd_header.h"
@@ -60,6 +61,8 @@ pcl::PointCloud<PointT> readPcd(const std::filesystem::path& path) {
     if (pcl::PCDReader().read(path.string(), fields) < 0) throw Error(path.string(), "", "is damaged");
   } catch (const pcl::PCLException& failure) {
     throw Error(path.string(), "", failure.what());
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string(), "", "is damaged, or too large for the memory");
   }
   pcl::PointCloud<PointT> cloud;
   pcl::fromPCLPointCloud2(fields, cloud);
