@@ -18,6 +18,7 @@ namespace {
 constexpr char kMagic[9] = "SAWNDTM\n";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeaderBytes = 96;
+constexpr std::size_t kReservedBytes = 24;
 constexpr std::size_t kTileRecordBytes = 40;
 constexpr std::size_t kEntryBytes = 84;
 constexpr std::uint32_t kLabelledFlag = 1;
@@ -155,7 +156,7 @@ Header readHeader(MapReader& reader) {
   header.entry_count = decoder.take<std::uint64_t>();
   header.tile_count = decoder.take<std::uint64_t>();
   header.directory_checksum = decoder.take<std::uint32_t>();
-  decoder.skip(20);
+  decoder.skip(kReservedBytes);
   if (decoder.take<std::uint32_t>() != crc32(bytes.data(), kHeaderBytes - 4)) {
     reader.fail(kHeaderBytes - 4, "damaged: the header's checksum does not match");
   }
@@ -273,7 +274,7 @@ void writeMapFile(const std::string& path, const MapOrigin& origin, const std::v
   header.put(static_cast<std::uint64_t>(entries.size()));
   header.put(static_cast<std::uint64_t>(tiles.size()));
   header.put(directory.checksum());
-  header.putZeros(20);
+  header.putZeros(kReservedBytes);
   header.put(header.checksum());
 
   AtomicOutput output(path);

@@ -11,7 +11,7 @@ namespace saw_ndt {
 //
 //   header     96 bytes: magic "SAWNDTM\n", u32 version, u32 header bytes, f64 resolution (m), u32 tile size (voxels),
 //              u32 flags (bit 0: labelled), u64 scans, u64 points, u64 entries, u64 tiles, u32 CRC-32 of the directory,
-//              20 bytes zero, u32 CRC-32 of the header before it
+//              24 bytes zero, u32 CRC-32 of the header before it
 //   directory  40 bytes a tile, ordered by z, y, x: i32 x y z, u32 CRC-32 of the tile's entries, u64 entries,
 //              u64 offset in the file, u64 zero
 //   entries    84 bytes each, tile after tile, ordered by z, y, x, label: u8 x y z within the tile, u8 label, u64 count,

@@ -31,9 +31,9 @@ struct AlignmentOptions {
   double least_curvature_share = 0.5;
 
   bool use_coarse_level = true;         ///< DAMPED_NEWTON: start on the coarse level where the map has one
-  int coarse_max_iterations = 10;       ///< steps on the coarse level at most, 1 or more
+  int coarse_max_iterations = 30;       ///< steps on the coarse level at most, 1 or more
   int coarse_stride = 4;                ///< every how many-th source point the coarse level uses, 1 or more
-  double coarse_settled_voxels = 0.1;   ///< the coarse level is left when a step is shorter, in fine voxels
+  double coarse_settled_voxels = 0.02;  ///< the coarse level is left when a step is shorter, in fine voxels
 
   double line_search_max_step = 0.1;    ///< NEWTON_MORE_THUENTE: longest step, metres and radians in one norm
   double line_search_min_step = 5e-4;   ///< NEWTON_MORE_THUENTE: shortest step of the line search
