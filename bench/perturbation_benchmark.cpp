@@ -1,0 +1,178 @@
+// Aligns real scans from perturbed starts and prints how far, how fast and how repeatably each method comes back to the
+// reference pose, pcl::NormalDistributionsTransform beside ours.
+
+#include <pcl/filters/voxel_grid.h>
+#include <pcl/registration/ndt.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <iomanip>
+#include <iostream>
+
+#include "app_options.h"
+#include "progress_bar.h"
+#include "saw_ndt/common/geometry.h"
+#include "saw_ndt/evaluation/statistics.h"
+#include "saw_ndt/io/scan_selection.h"
+#include "saw_ndt/localization/localizer.h"
+#include "saw_ndt/map/sequence_map.h"
+#include "saw_ndt/segmentation/cloud_view.h"
+
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZI>;
+
+constexpr int kStarts = 10;
+constexpr double kSuccess_m = 0.1;
+constexpr double kSuccess_deg = 0.2;
+
+struct Alignment {
+  Eigen::Isometry3d T_map_lidar;
+  double align_ms = 0.0;
+  int evaluations = 0;
+};
+
+// Aligns one scan from one start.
+using Method = std::function<Alignment(const Cloud& scan, const Eigen::Isometry3d& T_start)>;
+
+// Start k of ten: 0.5 m off in direction k, up, level or down by 0.1 m, turned by one degree to either side.
+Eigen::Isometry3d perturbed(const Eigen::Isometry3d& T_reference, int k) {
+  const double direction = 2.0 * saw_ndt::kPi * k / kStarts;
+  Eigen::Isometry3d T = T_reference;
+  T.translation() += Eigen::Vector3d(0.5 * std::cos(direction), 0.5 * std::sin(direction), 0.1 * (k % 3 - 1));
+  const double yaw = saw_ndt::radiansFromDegrees(k % 2 == 1 ? 1.0 : -1.0);
+  T.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * T.linear();
+  return T;
+}
+
+Method ourMethod(const std::string& name, const saw_ndt::WeightedVoxelMap& map, int threads) {
+  saw_ndt::LocalizerOptions options;
+  options.method = saw_ndt::LocalizationMethod::named(name);
+  options.alignment.threads = threads;
+  saw_ndt::VoxelWeighting weighting;
+  weighting.confidence = options.method.confidence;
+  auto localizer = std::make_shared<saw_ndt::Localizer>(
+      std::make_shared<const saw_ndt::WeightedVoxelMap>(map.reweighted(weighting)), options);
+  return [localizer](const Cloud& scan, const Eigen::Isometry3d& T_start) {
+    localizer->setInitialPose(T_start);
+    const saw_ndt::LocalizationResult result = localizer->localize(saw_ndt::viewOf(scan), 0.0);
+    return Alignment{result.alignment.T_map_source, result.times.align_ms, result.alignment.evaluations};
+  };
+}
+
+Method pclMethod(const Cloud::ConstPtr& target) {
+  auto ndt = std::make_shared<pcl::NormalDistributionsTransform<pcl::PointXYZI, pcl::PointXYZI>>();
+  ndt->setTransformationEpsilon(1e-4);
+  ndt->setInputTarget(target);
+  return [ndt](const Cloud& scan, const Eigen::Isometry3d& T_start) {
+    auto source = pcl::make_shared<Cloud>();
+    pcl::VoxelGrid<pcl::PointXYZI> filter;
+    filter.setLeafSize(0.2f, 0.2f, 0.2f);
+    filter.setInputCloud(pcl::make_shared<Cloud>(scan));
+    filter.filter(*source);
+    ndt->setInputSource(source);
+    Cloud aligned;
+    const auto start = std::chrono::steady_clock::now();
+    ndt->align(aligned, T_start.matrix().cast<float>());
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    Eigen::Isometry3d T;
+    T.matrix() = ndt->getFinalTransformation().cast<double>();
+    return Alignment{saw_ndt::normalizedRotation(T), elapsed.count(), 0};
+  };
+}
+
+struct Figures {
+  std::vector<double> align_ms, error_m, error_deg, spread_m, evaluations;
+  int successes = 0;
+};
+
+void measure(const Method& method, const Cloud& scan, const Eigen::Isometry3d& T_reference, Figures& figures) {
+  std::vector<Eigen::Vector3d> positions;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (int k = 0; k < kStarts; ++k) {
+    const Alignment alignment = method(scan, perturbed(T_reference, k));
+    const double error_m = (alignment.T_map_lidar.translation() - T_reference.translation()).norm();
+    const double error_deg = saw_ndt::degreesFromRadians(
+        saw_ndt::rotationAngle(T_reference.linear().transpose() * alignment.T_map_lidar.linear()));
+    figures.align_ms.push_back(alignment.align_ms);
+    figures.evaluations.push_back(alignment.evaluations);
+    figures.error_m.push_back(error_m);
+    figures.error_deg.push_back(error_deg);
+    figures.successes += error_m < kSuccess_m && error_deg < kSuccess_deg;
+    positions.push_back(alignment.T_map_lidar.translation());
+    mean += positions.back() / kStarts;
+  }
+  for (const Eigen::Vector3d& position : positions) figures.spread_m.push_back((position - mean).norm());
+}
+
+void print(const std::string& name, const Figures& f) {
+  using saw_ndt::percentile;
+  std::cout << std::fixed << "| " << name << " | " << std::setprecision(1) << percentile(f.align_ms, 50) << " / "
+            << percentile(f.align_ms, 90) << " | " << std::setprecision(4) << percentile(f.error_m, 50) << " / "
+            << percentile(f.error_m, 90) << " / " << percentile(f.error_m, 100) << " | " << percentile(f.error_deg, 50)
+            << " / " << percentile(f.error_deg, 90) << " | " << std::setprecision(5) << percentile(f.spread_m, 50)
+            << " / " << percentile(f.spread_m, 90) << " | " << std::setprecision(3)
+            << static_cast<double>(f.successes) / static_cast<double>(f.error_m.size()) << " | ";
+  if (percentile(f.evaluations, 100) > 0.0) {
+    std::cout << std::setprecision(1) << saw_ndt::mean(f.evaluations) << " / " << std::setprecision(0)
+              << percentile(f.evaluations, 100);
+  }
+  std::cout << " |\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string sequence_folder, map_scans = "0:70:2", scans = "1:70:10";
+  bool without_pcl = false;
+  saw_ndt::AppOptions app("perturbation_benchmark",
+                          "Aligns scans of a drive from ten perturbed starts each (0.5 m off in all directions, 0.1 m up "
+                          "or down, 1 degree of yaw) with pcl::NormalDistributionsTransform (epsilon 1e-4, one thread) "
+                          "and with this project's methods, and prints a table. Success: within 0.1 m and 0.2 degrees "
+                          "of the reference pose. Spread: distance of the ten final positions of a scan from their "
+                          "mean. Evaluations: mean / most, of score, gradient and Hessian on either level.");
+  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout");
+  app.addOption("map-scans", &map_scans, "SLICE", "scans of the map");
+  app.addOption("scans", &scans, "SLICE", "scans to align");
+  app.addFlag("without-pcl", &without_pcl, "leave PCL out, which takes most of the time");
+
+  return saw_ndt::runApp(argc, argv, app, [&] {
+    const saw_ndt::KittiSequence sequence(sequence_folder);
+    const std::vector<Eigen::Isometry3d> reference = sequence.posesLidar();
+    const std::vector<int> mapped = saw_ndt::parseScanSelection(map_scans, sequence.scanCount());
+    const std::vector<int> aligned = saw_ndt::parseScanSelection(scans, sequence.scanCount());
+    const saw_ndt::WeightedVoxelMap map = saw_ndt::buildSequenceMap(sequence, mapped, {}).build();
+
+    std::vector<std::pair<std::string, Method>> methods;
+    for (const std::string& name : saw_ndt::LocalizationMethod::names()) {
+      methods.emplace_back(name, ourMethod(name, map, app.threads()));
+    }
+    if (!without_pcl) {
+      auto target = pcl::make_shared<Cloud>();
+      for (const int scan : mapped) {
+        for (pcl::PointXYZI point : sequence.readScan(scan)) {
+          point.getVector3fMap() = (reference[static_cast<std::size_t>(scan)] *
+                                    point.getVector3fMap().cast<double>()).cast<float>();
+          target->push_back(point);
+        }
+      }
+      methods.emplace_back("pcl::NormalDistributionsTransform", pclMethod(target));
+    }
+
+    std::vector<Figures> figures(methods.size());
+    saw_ndt::ProgressBar progress(aligned.size() * methods.size());
+    for (const int scan : aligned) {
+      const Cloud cloud = sequence.readScan(scan);
+      // Methods take turns scan by scan, so that a slow minute of the machine hits all of them.
+      for (std::size_t m = 0; m < methods.size(); ++m) {
+        measure(methods[m].second, cloud, reference[static_cast<std::size_t>(scan)], figures[m]);
+        progress.step();
+      }
+    }
+    std::cout << "| method (" << app.threads() << " threads) | align ms median / p90 | error m median / p90 / max | "
+              << "rotation deg median / p90 | spread m median / p90 | success | evaluations mean / most |\n"
+              << "|---|---|---|---|---|---|---|\n";
+    for (std::size_t m = 0; m < methods.size(); ++m) print(methods[m].first, figures[m]);
+  });
+}
