@@ -12,7 +12,7 @@ namespace saw_ndt {
 namespace {
 
 // A smaller fall is a point that parallax or motion compensation put behind its predecessor (10 degrees on KITTI).
-constexpr float kAzimuthFallOfNextRing = static_cast<float>(radiansFromDegrees(200.0));
+constexpr double kAzimuthFallOfNextRingDeg = 200.0;
 
 // Mean misfit of runs and beams above which a scan is not listed ring after ring: on KITTI it is below 0.6 degrees, and
 // above 5 where the points come in another order.
@@ -67,7 +67,8 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
 
 bool RingIndex::assignFromFileOrder(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
   run_starts_.clear();
-  float previous_azimuth = std::numeric_limits<float>::infinity();
+  const auto column_fall = static_cast<std::int32_t>(sensor.columns * (kAzimuthFallOfNextRingDeg / 360.0));
+  std::int32_t previous_column = std::numeric_limits<std::int32_t>::max();
   std::size_t previous = scan.size;
   bool on_seam = false;
   for (std::size_t i = 0; i < scan.size; ++i) {
@@ -82,12 +83,12 @@ bool RingIndex::assignFromFileOrder(const ScanView& scan, const PointMeasurement
       if (to_ring_above < to_ring_below) run_starts_.back() = i;
       on_seam = false;
     }
-    if (points.azimuth[i] < previous_azimuth - kAzimuthFallOfNextRing) {
+    if (points.column[i] < previous_column - column_fall) {
       if (run_starts_.size() > static_cast<std::size_t>(sensor.rows())) return false;
       on_seam = scan.point(i)[1] == 0.0F && !run_starts_.empty();
       run_starts_.push_back(i);
     }
-    previous_azimuth = points.azimuth[i];
+    previous_column = points.column[i];
     if (!on_seam) previous = i;
   }
   if (on_seam) run_starts_.pop_back();
