@@ -6,11 +6,15 @@
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
+#include "segmentation/vector_code.h"
 
 namespace saw_ndt {
 namespace {
 
-constexpr std::int32_t kNoRun = -1;
+// Runs are numbered from 2: what a pixel of no run holds instead.
+constexpr std::int32_t kNoReturn = 0;
+constexpr std::int32_t kGroundPixel = 1;
+constexpr std::int32_t kFirstRun = 2;
 
 // What a pixel that may be part of a component has: a return that is no ground; a connection to the pixel before it in
 // its row; one to the pixel above it.
@@ -32,8 +36,8 @@ inline bool connected(float first, float second, float ratio) {
 }
 
 // Ranges with those of ground taken out.
-void takeOutGround(std::size_t count, const float* __restrict range, const std::uint8_t* __restrict ground,
-                   float* __restrict obstacle_range) {
+SAW_NDT_VECTOR_CODE void takeOutGround(std::size_t count, const float* __restrict range,
+                                       const std::uint8_t* __restrict ground, float* __restrict obstacle_range) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::int32_t is_ground = ground[i];
     obstacle_range[i] = is_ground != 0 ? 0.0F : range[i];
@@ -41,9 +45,10 @@ void takeOutGround(std::size_t count, const float* __restrict range, const std::
 }
 
 // The links of pixels with those before them in their row and those above them; `range` begins one pixel early. Without
-// branches, so that the compiler makes vector code of it.
-void linkPixels(std::size_t count, float ratio_along, float ratio_across, const float* __restrict range,
-                const float* __restrict above, std::int32_t* __restrict links) {
+// branches,.
+SAW_NDT_VECTOR_CODE void linkPixels(std::size_t count, float ratio_along, float ratio_across,
+                                    const float* __restrict range, const float* __restrict above,
+                                    std::int32_t* __restrict links) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::int32_t active = range[i + 1] > 0.0F ? kActive : 0;
     const std::int32_t along = connected(range[i + 1], range[i], ratio_along) ? kLinkedBefore : 0;
@@ -67,11 +72,10 @@ void ComponentFilter::label(const RangeImage& image, const SensorModel& sensor, 
   const auto columns = static_cast<std::size_t>(image.columns());
   const std::size_t pixels = image.range().size();
   run_of_pixel_.resize(pixels);
-  runs_.resize(pixels);
-  joins_.resize(columns);
+  runs_.resize(pixels + kFirstRun);
   links_.resize(columns);
   above_.assign(columns + 1, 0.0F);  // nothing is above the top row
-  run_count_ = 0;
+  run_end_ = kFirstRun;
   const float along = connectionRatio(360.0 / image.columns(), options.connection_angle_deg);
   for (int row = 0; row < image.rows(); ++row) {
     const std::size_t begin = static_cast<std::size_t>(row) * columns;
@@ -81,57 +85,69 @@ void ComponentFilter::label(const RangeImage& image, const SensorModel& sensor, 
     const double apart_deg = row > 0 ? sensor.elevations_deg[row - 1] - sensor.elevations_deg[row] : 0.0;
     const float across = connectionRatio(apart_deg, options.connection_angle_deg);
     linkPixels(columns, along, across, current_.data(), above_.data() + 1, links_.data());
-    connectRow(row, image.columns());
+    connectRow(row, image.columns(), ground.data() + begin);
     std::swap(current_, above_);
   }
 
-  // 0 for what is too small, else 1.
-  kept_.resize(static_cast<std::size_t>(run_count_) + 1);
-  for (std::int32_t index = 0; index < run_count_; ++index) {
-    const Run& component = runs_[rootOf(index)];
-    // 4-connected: the rows of a component have no gap.
-    const int rings = component.bottom_row - component.top_row + 1;
-    const bool tall = component.pixels >= options.minimum_pixels_tall && rings >= options.minimum_rings_tall;
-    kept_[index] =
-        tall || component.pixels >= options.minimum_pixels ? StructuralLabel::NonGround : StructuralLabel::Noise;
-  }
+  chooseComponents(options);
   labels.resize(pixels);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    const std::int32_t run = run_of_pixel_[pixel];
-    const StructuralLabel label = run == kNoRun ? StructuralLabel::Noise : kept_[run];
-    labels[pixel] = ground[pixel] != 0 ? StructuralLabel::Ground : label;
-  }
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) labels[pixel] = label_of_run_[run_of_pixel_[pixel]];
 }
 
-void ComponentFilter::connectRow(int row, std::int32_t columns) {
-  const std::int32_t first_run = run_count_;
+void ComponentFilter::connectRow(int row, std::int32_t columns, const std::uint8_t* ground) {
+  const std::int32_t first_run = run_end_;
   std::int32_t run = first_run - 1;
-  std::int32_t* run_of_pixel = run_of_pixel_.data() + static_cast<std::ptrdiff_t>(row) * columns;
-  std::size_t join_count = 0;
-  std::int32_t last_above = kNoRun;
+  std::int32_t* const run_of_pixel = run_of_pixel_.data() + static_cast<std::ptrdiff_t>(row) * columns;
+  const std::int32_t* const links = links_.data();
+  Run* const runs = runs_.data();
+  std::int32_t last_above = 0;
   for (std::int32_t column = 0; column < columns; ++column) {
-    const std::int32_t link = links_[column];
+    const std::int32_t link = links[column];
     if (link == 0) {
-      run_of_pixel[column] = kNoRun;
+      run_of_pixel[column] = ground[column] != 0 ? kGroundPixel : kNoReturn;
       continue;
     }
     if (column == 0 || (link & kLinkedBefore) == 0) {
       ++run;
-      runs_[run] = {run, 0, row, row};
-      last_above = kNoRun;
+      runs[run] = {run, 0, row, row};
+      last_above = 0;
     }
-    ++runs_[run].pixels;
+    ++runs[run].pixels;
     run_of_pixel[column] = run;
     if ((link & kLinkedAbove) == 0) continue;
     const std::int32_t above = run_of_pixel[column - columns];
-    if (above == last_above) continue;
+    if (above != last_above) unite(above, run);
     last_above = above;
-    joins_[join_count++] = {run, above};
   }
-  run_count_ = run + 1;
-  // Only now are the sizes of these runs known, by which trees are united.
-  for (std::size_t join = 0; join < join_count; ++join) unite(joins_[join].second, joins_[join].first);
-  if ((links_[0] & kLinkedBefore) != 0) unite(first_run, run);
+  run_end_ = run + 1;
+  if ((links[0] & kLinkedBefore) != 0) unite(first_run, run);
+}
+
+void ComponentFilter::chooseComponents(const ComponentOptions& options) {
+  // A parent has the smaller number: from the last run on, each hands on to its parent what it holds.
+  for (std::int32_t index = run_end_ - 1; index >= kFirstRun; --index) {
+    const Run& run = runs_[index];
+    if (run.parent == index) continue;
+    Run& parent = runs_[run.parent];
+    parent.pixels += run.pixels;
+    parent.bottom_row = std::max(parent.bottom_row, run.bottom_row);
+  }
+  label_of_run_.reserve(runs_.size());  // the number of runs changes from scan to scan of one size
+  label_of_run_.resize(static_cast<std::size_t>(run_end_));
+  label_of_run_[kNoReturn] = StructuralLabel::Noise;
+  label_of_run_[kGroundPixel] = StructuralLabel::Ground;
+  for (std::int32_t index = kFirstRun; index < run_end_; ++index) {
+    const Run& run = runs_[index];
+    if (run.parent != index) {
+      label_of_run_[index] = label_of_run_[run.parent];
+      continue;
+    }
+    // 4-connected: the rows of a component have no gap, and its root is in the topmost.
+    const int rings = run.bottom_row - run.top_row + 1;
+    const bool tall = run.pixels >= options.minimum_pixels_tall && rings >= options.minimum_rings_tall;
+    label_of_run_[index] =
+        tall || run.pixels >= options.minimum_pixels ? StructuralLabel::NonGround : StructuralLabel::Noise;
+  }
 }
 
 std::int32_t ComponentFilter::rootOf(std::int32_t run) {
@@ -145,14 +161,11 @@ std::int32_t ComponentFilter::rootOf(std::int32_t run) {
 void ComponentFilter::unite(std::int32_t first, std::int32_t second) {
   first = rootOf(first);
   second = rootOf(second);
-  if (first == second) return;
-  if (runs_[first].pixels < runs_[second].pixels) std::swap(first, second);
-  Run& root = runs_[first];
-  Run& child = runs_[second];
-  child.parent = first;
-  root.pixels += child.pixels;
-  root.top_row = std::min(root.top_row, child.top_row);
-  root.bottom_row = std::max(root.bottom_row, child.bottom_row);
+  if (first < second) {
+    runs_[second].parent = first;
+  } else {
+    runs_[first].parent = second;
+  }
 }
 
 }  // namespace saw_ndt

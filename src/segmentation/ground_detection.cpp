@@ -5,6 +5,7 @@
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
+#include "segmentation/vector_code.h"
 
 namespace saw_ndt {
 namespace {
@@ -23,10 +24,11 @@ struct GrowthLimits {
   float profile_tolerance;
 };
 
-// Lets ground grow by one row in every column. Without branches, so that the compiler makes vector code of it.
-void growRow(std::size_t columns, const GrowthLimits limits, const float* __restrict range,
-             const float* __restrict horizontal_range, const float* __restrict height, float* __restrict last_range,
-             float* __restrict last_height, float* __restrict profile_height, std::uint8_t* __restrict states) {
+// Lets ground grow by one row in every column. Without branches,.
+SAW_NDT_VECTOR_CODE void growRow(std::size_t columns, const GrowthLimits limits, const float* __restrict range,
+                                 const float* __restrict horizontal_range, const float* __restrict height,
+                                 float* __restrict last_range, float* __restrict last_height,
+                                 float* __restrict profile_height, std::uint8_t* __restrict states) {
   for (std::size_t column = 0; column < columns; ++column) {
     const float z = height[column];
     const float beyond = horizontal_range[column] - last_range[column];
@@ -47,9 +49,9 @@ void growRow(std::size_t columns, const GrowthLimits limits, const float* __rest
 }
 
 // How many of three pixels one above the other have returns, and how many are ground.
-void sumColumns(std::size_t columns, const std::uint8_t* __restrict above, const std::uint8_t* __restrict middle,
-                const std::uint8_t* __restrict below, std::uint8_t* __restrict returns,
-                std::uint8_t* __restrict ground) {
+SAW_NDT_VECTOR_CODE void sumColumns(std::size_t columns, const std::uint8_t* __restrict above,
+                                    const std::uint8_t* __restrict middle, const std::uint8_t* __restrict below,
+                                    std::uint8_t* __restrict returns, std::uint8_t* __restrict ground) {
   const auto is = [](bool condition) { return static_cast<std::uint8_t>(condition ? 1 : 0); };
   for (std::size_t column = 0; column < columns; ++column) {
     returns[column] = static_cast<std::uint8_t>(is(above[column] >= kReturn) + is(middle[column] >= kReturn) +
@@ -61,8 +63,9 @@ void sumColumns(std::size_t columns, const std::uint8_t* __restrict above, const
 
 // Ground stays where half of the eight neighbours that have returns are ground; what is doubtful joins where more than
 // three quarters are. The sums have one column more at either side.
-void settleRow(std::size_t columns, const std::uint8_t* __restrict states, const std::uint8_t* __restrict returns,
-               const std::uint8_t* __restrict ground, std::uint8_t* __restrict result) {
+SAW_NDT_VECTOR_CODE void settleRow(std::size_t columns, const std::uint8_t* __restrict states,
+                                   const std::uint8_t* __restrict returns, const std::uint8_t* __restrict ground,
+                                   std::uint8_t* __restrict result) {
   for (std::size_t column = 0; column < columns; ++column) {
     const std::uint8_t is_ground = states[column] == kGround ? 1 : 0;
     const std::uint8_t is_doubtful = states[column] == kDoubtful ? 1 : 0;
@@ -128,6 +131,7 @@ float GroundDetection::estimatedSensorHeight(const RangeImage& image, const Grou
   const float limit = tangent(options.slope_deg);
   const int columns = image.columns();
   candidate_heights_.clear();
+  candidate_heights_.reserve(static_cast<std::size_t>(columns));
   for (int column = 0; column < columns; ++column) {
     for (int row = image.rows() - 1; row > 0; --row) {
       const int lower = row * columns + column;

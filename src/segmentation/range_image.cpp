@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
 #include "saw_ndt/common/geometry.h"
+#include "segmentation/vector_code.h"
 
 namespace saw_ndt {
 namespace {
@@ -44,9 +46,10 @@ struct BlockGeometry {
 };
 
 // Column, range, levelled horizontal range and height of points. Without branches, as azimuthOf().
-void measureBlock(std::size_t count, const BlockGeometry geometry, const float* __restrict x, const float* __restrict y,
-                  const float* __restrict z, std::int32_t* __restrict column, float* __restrict range,
-                  float* __restrict horizontal_range, float* __restrict height) {
+SAW_NDT_VECTOR_CODE void measureBlock(std::size_t count, const BlockGeometry geometry, const float* __restrict x,
+                                      const float* __restrict y, const float* __restrict z,
+                                      std::int32_t* __restrict column, float* __restrict range,
+                                      float* __restrict horizontal_range, float* __restrict height) {
   for (std::size_t i = 0; i < count; ++i) {
     const float squared_range = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
     // Not a number compares false; an infinite coordinate, or one whose square overflows, gives infinity.
@@ -60,6 +63,18 @@ void measureBlock(std::size_t count, const BlockGeometry geometry, const float* 
     horizontal_range[i] = std::sqrt(squared_horizontal_range > 0.0F ? squared_horizontal_range : 0.0F);
     height[i] = level_height;
   }
+}
+
+// `taken` where all bits of the mask are 1, `held` where they are 0.
+inline float blend(std::uint32_t mask, float taken, float held) {
+  std::uint32_t taken_bits;
+  std::uint32_t held_bits;
+  std::memcpy(&taken_bits, &taken, sizeof(taken));
+  std::memcpy(&held_bits, &held, sizeof(held));
+  const std::uint32_t bits = (taken_bits & mask) | (held_bits & ~mask);
+  float result;
+  std::memcpy(&result, &bits, sizeof(result));
+  return result;
 }
 
 }  // namespace
@@ -98,25 +113,40 @@ void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double
   measurePoints(scan, mounting_pitch);
   ring_index_.assign(scan, points_, sensor);
 
+  placePoints(scan.size);
+}
+
+void RangeImage::placePoints(std::size_t point_count) {
   const std::size_t pixels = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_);
   range_.assign(pixels, 0.0F);
   horizontal_range_.resize(pixels);
   height_.resize(pixels);
-  pixel_of_point_.resize(scan.size);
-  const std::vector<std::int16_t>& row_of_point = ring_index_.rows();
-  for (std::size_t i = 0; i < scan.size; ++i) {
-    const float range = points_.range[i];
+  pixel_of_point_.resize(point_count);
+  float* const range = range_.data();
+  float* const horizontal_range = horizontal_range_.data();
+  float* const height = height_.data();
+  std::int32_t* const pixel_of_point = pixel_of_point_.data();
+  const std::int16_t* const row_of_point = ring_index_.rows().data();
+  const float* const point_range = points_.range.data();
+  const std::int32_t* const point_column = points_.column.data();
+  const float* const point_horizontal_range = points_.horizontal_range.data();
+  const float* const point_height = points_.height.data();
+  const std::int32_t columns = columns_;
+  for (std::size_t i = 0; i < point_count; ++i) {
     const std::int32_t row = row_of_point[i];
-    if (range <= 0.0F || row == RingIndex::kNoRow) {
-      pixel_of_point_[i] = kNoPixel;
+    if (point_range[i] <= 0.0F || row == RingIndex::kNoRow) {
+      pixel_of_point[i] = kNoPixel;
       continue;
     }
-    const std::int32_t pixel = row * columns_ + points_.column[i];
-    pixel_of_point_[i] = pixel;
-    if (range_[pixel] > 0.0F && range_[pixel] <= range) continue;
-    range_[pixel] = range;
-    horizontal_range_[pixel] = points_.horizontal_range[i];
-    height_[pixel] = points_.height[i];
+    const std::int32_t pixel = row * columns + point_column[i];
+    pixel_of_point[i] = pixel;
+    // Which return is nearer is as good as random, so it must not be a branch: blend bits instead.
+    const float held = range[pixel];
+    const bool takes = (held <= 0.0F) | (point_range[i] < held);
+    const std::uint32_t mask = 0U - static_cast<std::uint32_t>(takes);
+    range[pixel] = blend(mask, point_range[i], held);
+    horizontal_range[pixel] = blend(mask, point_horizontal_range[i], horizontal_range[pixel]);
+    height[pixel] = blend(mask, point_height[i], height[pixel]);
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "saw_ndt/common/labels.h"
@@ -36,7 +35,8 @@ class ComponentFilter {
              const ComponentOptions& options, std::vector<StructuralLabel>& labels);
 
  private:
-  /// Pixels of one row that are connected one to the next, as a node of a forest: what the tree below it holds.
+  /// Pixels of one row that are connected one to the next, as a node of a forest. A parent has a smaller number than
+  /// its children, a root is its own parent.
   struct Run {
     std::int32_t parent;
     std::int32_t pixels;
@@ -44,15 +44,15 @@ class ComponentFilter {
     std::int32_t bottom_row;
   };
 
-  void connectRow(int row, std::int32_t columns);
+  void connectRow(int row, std::int32_t columns, const std::uint8_t* ground);
+  void chooseComponents(const ComponentOptions& options);
   std::int32_t rootOf(std::int32_t run);
   void unite(std::int32_t first, std::int32_t second);
 
-  std::int32_t run_count_ = 0;
+  std::int32_t run_end_ = 0;
   std::vector<Run> runs_;
   std::vector<std::int32_t> run_of_pixel_;
-  std::vector<StructuralLabel> kept_;
-  std::vector<std::pair<std::int32_t, std::int32_t>> joins_;
+  std::vector<StructuralLabel> label_of_run_;
   std::vector<std::int32_t> links_;
   std::vector<float> current_;
   std::vector<float> above_;

@@ -41,6 +41,7 @@ class RingIndex {
   VerticalIndexSource source() const { return source_; }
 
  private:
+  bool findRuns(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
   bool assignFromFileOrder(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
   void assignFromElevation(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
   void putLowestRowLast(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
