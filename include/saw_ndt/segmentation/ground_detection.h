@@ -26,8 +26,7 @@ struct GroundOptions {
 
   /// Inclination: greatest inclination in degrees between vertically adjacent pixels of ground, 0 to 90.
   double inclination_limit_deg = 10.0;
-  /// Inclination: beams above this elevation in degrees never see ground. The default leaves an HDL-64E its lowest 50
-  /// beams.
+  /// Inclination: beams above this elevation in degrees never see ground. An HDL-64E is left its lowest 51 beams.
   double inclination_top_elevation_deg = -2.0;
 
   /// Growing: height of the sensor above ground in metres; 0: estimated in each scan.
