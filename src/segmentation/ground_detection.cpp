@@ -5,16 +5,79 @@
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
+#include "segmentation/vector_code.h"
 
 namespace saw_ndt {
 namespace {
 
-// States of a pixel while ground grows. Doubtful: near the profile, yet too steep a step from the last ground return.
-constexpr std::uint8_t kNotGround = 0;
-constexpr std::uint8_t kGround = 1;
+// States of a pixel while ground grows, each implying those before it. Doubtful: near the profile, yet too steep a step
+// from the last ground return.
+constexpr std::uint8_t kReturn = 1;
 constexpr std::uint8_t kDoubtful = 2;
+constexpr std::uint8_t kGround = 3;
 
 float tangent(double degrees) { return static_cast<float>(std::tan(radiansFromDegrees(degrees))); }
+
+struct GrowthLimits {
+  float slope;
+  float step_tolerance;
+  float profile_tolerance;
+};
+
+// Lets ground grow by one row in every column. Without branches,.
+SAW_NDT_VECTOR_CODE void growRow(std::size_t columns, const GrowthLimits limits, const float* __restrict range,
+                                 const float* __restrict horizontal_range, const float* __restrict height,
+                                 float* __restrict last_range, float* __restrict last_height,
+                                 float* __restrict profile_height, std::uint8_t* __restrict states) {
+  for (std::size_t column = 0; column < columns; ++column) {
+    const float z = height[column];
+    const float beyond = horizontal_range[column] - last_range[column];
+    const float advance = beyond > 0.0F ? beyond : 0.0F;
+    const float reach = limits.slope * advance;
+    const float above_profile = z - profile_height[column];
+    const float step = z - last_height[column];
+    const int has_return = range[column] > 0.0F ? 1 : 0;
+    const int near_profile = std::abs(above_profile) <= limits.profile_tolerance + reach ? has_return : 0;
+    const int is_ground = std::abs(step) <= limits.step_tolerance + reach ? near_profile : 0;
+    // The profile rises no faster than the slope, and falls at once: the lowest returns are the surest.
+    const float rise = above_profile < reach ? above_profile : reach;
+    last_range[column] += is_ground != 0 ? advance : 0.0F;
+    last_height[column] = is_ground != 0 ? z : last_height[column];
+    profile_height[column] += is_ground != 0 ? rise : 0.0F;
+    states[column] = static_cast<std::uint8_t>(has_return + near_profile + is_ground);
+  }
+}
+
+// How many of three pixels one above the other have returns, and how many are ground.
+SAW_NDT_VECTOR_CODE void sumColumns(std::size_t columns, const std::uint8_t* __restrict above,
+                                    const std::uint8_t* __restrict middle, const std::uint8_t* __restrict below,
+                                    std::uint8_t* __restrict returns, std::uint8_t* __restrict ground) {
+  const auto is = [](bool condition) { return static_cast<std::uint8_t>(condition ? 1 : 0); };
+  for (std::size_t column = 0; column < columns; ++column) {
+    returns[column] = static_cast<std::uint8_t>(is(above[column] >= kReturn) + is(middle[column] >= kReturn) +
+                                                is(below[column] >= kReturn));
+    ground[column] = static_cast<std::uint8_t>(is(above[column] == kGround) + is(middle[column] == kGround) +
+                                               is(below[column] == kGround));
+  }
+}
+
+// Ground stays where half of the eight neighbours that have returns are ground; what is doubtful joins where more than
+// three quarters are. The sums have one column more at either side.
+SAW_NDT_VECTOR_CODE void settleRow(std::size_t columns, const std::uint8_t* __restrict states,
+                                   const std::uint8_t* __restrict returns, const std::uint8_t* __restrict ground,
+                                   std::uint8_t* __restrict result) {
+  for (std::size_t column = 0; column < columns; ++column) {
+    const std::uint8_t is_ground = states[column] == kGround ? 1 : 0;
+    const std::uint8_t is_doubtful = states[column] == kDoubtful ? 1 : 0;
+    const auto neighbours = static_cast<std::uint8_t>(returns[column] + returns[column + 1] + returns[column + 2] - 1);
+    const auto of_ground =
+        static_cast<std::uint8_t>(ground[column] + ground[column + 1] + ground[column + 2] - is_ground);
+    const std::uint8_t stays = static_cast<std::uint8_t>(2 * of_ground) >= neighbours ? is_ground : 0;
+    const std::uint8_t joins =
+        static_cast<std::uint8_t>(4 * of_ground) > static_cast<std::uint8_t>(3 * neighbours) ? is_doubtful : 0;
+    result[column] = stays | joins;
+  }
+}
 
 }  // namespace
 
@@ -24,27 +87,29 @@ void GroundOptions::check() const {
   checkOption(in(inclination_top_elevation_deg, -90.0, 90.0), "inclination_top_elevation_deg",
               inclination_top_elevation_deg, "-90 to 90");
   checkOption(in(sensor_height_m, 0.0, 100.0), "sensor_height_m", sensor_height_m, "0 to 100");
-  checkOption(in(step_slope_deg, 0.0, 60.0), "step_slope_deg", step_slope_deg, "0 to 60");
+  checkOption(in(slope_deg, 0.0, 60.0), "slope_deg", slope_deg, "0 to 60");
   checkOption(in(step_tolerance_m, 0.0, 10.0), "step_tolerance_m", step_tolerance_m, "0 to 10");
-  checkOption(in(profile_slope_deg, 0.0, 60.0), "profile_slope_deg", profile_slope_deg, "0 to 60");
   checkOption(in(profile_tolerance_m, 0.0, 10.0), "profile_tolerance_m", profile_tolerance_m, "0 to 10");
-  checkOption(smoothing_passes >= 0 && smoothing_passes <= 10, "smoothing_passes", smoothing_passes, "0 to 10");
 }
 
 void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
                              std::vector<std::uint8_t>& ground) {
-  ground.assign(image.range().size(), 0);
   if (options.rule == GroundRule::Inclination) {
     detectByInclination(image, sensor, options, ground);
     return;
   }
-  grow(image, options, ground);
-  for (int pass = 0; pass < options.smoothing_passes; ++pass) smooth(image, ground);
-  for (std::uint8_t& state : ground) state = state == kGround ? 1 : 0;
+  ground.resize(image.range().size());
+  grow(image, options);
+  if (options.smooths) {
+    smooth(image, ground);
+  } else {
+    for (std::size_t pixel = 0; pixel < states_.size(); ++pixel) ground[pixel] = states_[pixel] == kGround ? 1 : 0;
+  }
 }
 
 void GroundDetection::detectByInclination(const RangeImage& image, const SensorModel& sensor,
                                           const GroundOptions& options, std::vector<std::uint8_t>& ground) {
+  ground.assign(image.range().size(), 0);
   const float limit = tangent(options.inclination_limit_deg);
   const int columns = image.columns();
   for (int row = image.rows() - 1; row > 0; --row) {
@@ -63,9 +128,10 @@ void GroundDetection::detectByInclination(const RangeImage& image, const SensorM
 float GroundDetection::estimatedSensorHeight(const RangeImage& image, const GroundOptions& options) {
   if (options.sensor_height_m > 0.0) return static_cast<float>(options.sensor_height_m);
   // The lowest level pair of returns of each column lies on the ground in most of the columns.
-  const float limit = tangent(options.step_slope_deg);
+  const float limit = tangent(options.slope_deg);
   const int columns = image.columns();
   candidate_heights_.clear();
+  candidate_heights_.reserve(static_cast<std::size_t>(columns));
   for (int column = 0; column < columns; ++column) {
     for (int row = image.rows() - 1; row > 0; --row) {
       const int lower = row * columns + column;
@@ -83,73 +149,41 @@ float GroundDetection::estimatedSensorHeight(const RangeImage& image, const Grou
   return -*middle;
 }
 
-void GroundDetection::grow(const RangeImage& image, const GroundOptions& options, std::vector<std::uint8_t>& ground) {
-  const float step_slope = tangent(options.step_slope_deg);
-  const float profile_slope = tangent(options.profile_slope_deg);
-  const auto step_tolerance = static_cast<float>(options.step_tolerance_m);
-  const auto profile_tolerance = static_cast<float>(options.profile_tolerance_m);
-  const int columns = image.columns();
+void GroundDetection::grow(const RangeImage& image, const GroundOptions& options) {
+  const auto columns = static_cast<std::size_t>(image.columns());
   const float sensor_height = estimatedSensorHeight(image, options);
   last_range_.assign(columns, 0.0F);
   last_height_.assign(columns, -sensor_height);
   profile_height_.assign(columns, -sensor_height);
-
+  states_.resize(image.range().size());
+  const GrowthLimits limits = {tangent(options.slope_deg), static_cast<float>(options.step_tolerance_m),
+                               static_cast<float>(options.profile_tolerance_m)};
   for (int row = image.rows() - 1; row >= 0; --row) {
-    for (int column = 0; column < columns; ++column) {
-      const int pixel = row * columns + column;
-      if (image.range()[pixel] <= 0.0F) continue;
-      const float range = image.horizontalRange()[pixel];
-      const float height = image.height()[pixel];
-      const float advance = std::max(range - last_range_[column], 0.0F);
-      const float above_profile = height - profile_height_[column];
-      const float follow = profile_slope * advance;
-      if (std::abs(above_profile) > profile_tolerance + follow) continue;
-      ground[pixel] = kDoubtful;
-      if (std::abs(height - last_height_[column]) > step_tolerance + step_slope * advance) continue;
-      ground[pixel] = kGround;
-      last_range_[column] += advance;
-      last_height_[column] = height;
-      profile_height_[column] += std::clamp(above_profile, -follow, follow);
-    }
+    const std::size_t begin = static_cast<std::size_t>(row) * columns;
+    growRow(columns, limits, image.range().data() + begin, image.horizontalRange().data() + begin,
+            image.height().data() + begin, last_range_.data(), last_height_.data(), profile_height_.data(),
+            states_.data() + begin);
   }
 }
 
 void GroundDetection::smooth(const RangeImage& image, std::vector<std::uint8_t>& ground) {
   const int rows = image.rows();
-  const int columns = image.columns();
-  const std::size_t padded = static_cast<std::size_t>(columns) + 2;
-  before_ = ground;
-  column_returns_.resize(padded);
-  column_ground_.resize(padded);
+  const auto columns = static_cast<std::size_t>(image.columns());
+  padded_returns_.resize(columns + 2);
+  padded_ground_.resize(columns + 2);
   for (int row = 0; row < rows; ++row) {
-    // Sums over the three rows, one column of the image either side over the seam.
-    std::fill(column_returns_.begin(), column_returns_.end(), std::uint8_t{0});
-    std::fill(column_ground_.begin(), column_ground_.end(), std::uint8_t{0});
-    for (int other = std::max(row - 1, 0); other <= std::min(row + 1, rows - 1); ++other) {
-      const float* range = image.range().data() + other * columns;
-      const std::uint8_t* state = before_.data() + other * columns;
-      for (int column = 0; column < columns; ++column) {
-        column_returns_[column + 1] = static_cast<std::uint8_t>(column_returns_[column + 1] + (range[column] > 0.0F));
-        column_ground_[column + 1] = static_cast<std::uint8_t>(column_ground_[column + 1] + (state[column] == kGround));
-      }
+    const std::uint8_t* middle = states_.data() + static_cast<std::size_t>(row) * columns;
+    no_returns_.assign(columns, 0);
+    const std::uint8_t* above = row > 0 ? middle - columns : no_returns_.data();
+    const std::uint8_t* below = row + 1 < rows ? middle + columns : no_returns_.data();
+    sumColumns(columns, above, middle, below, padded_returns_.data() + 1, padded_ground_.data() + 1);
+    // The neighbours over the azimuth seam.
+    for (std::vector<std::uint8_t>* padded : {&padded_returns_, &padded_ground_}) {
+      padded->front() = (*padded)[columns];
+      padded->back() = (*padded)[1];
     }
-    column_returns_[0] = column_returns_[columns];
-    column_returns_[columns + 1] = column_returns_[1];
-    column_ground_[0] = column_ground_[columns];
-    column_ground_[columns + 1] = column_ground_[1];
-
-    const std::uint8_t* state = before_.data() + row * columns;
-    std::uint8_t* result = ground.data() + row * columns;
-    for (int column = 0; column < columns; ++column) {
-      const int is_ground = state[column] == kGround ? 1 : 0;
-      const int returns = column_returns_[column] + column_returns_[column + 1] + column_returns_[column + 2] - 1;
-      const int of_ground =
-          column_ground_[column] + column_ground_[column + 1] + column_ground_[column + 2] - is_ground;
-      const bool stays = state[column] == kGround && 2 * of_ground >= returns;
-      const bool joins = state[column] == kDoubtful && 4 * of_ground > 3 * returns;
-      const bool doubtful = state[column] != kNotGround;
-      result[column] = stays || joins ? kGround : (doubtful ? kDoubtful : kNotGround);
-    }
+    settleRow(columns, middle, padded_returns_.data(), padded_ground_.data(),
+              ground.data() + static_cast<std::size_t>(row) * columns);
   }
 }
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
 #include "saw_ndt/common/geometry.h"
+#include "segmentation/vector_code.h"
 
 namespace saw_ndt {
 namespace {
@@ -36,15 +38,55 @@ inline float azimuthOf(float x, float y) {
   return y < 0.0F ? kTurn - angle : angle;
 }
 
+struct BlockGeometry {
+  float columns_per_radian;
+  float last_column;
+  float pitch_cosine;
+  float pitch_sine;
+};
+
+// Column, range, levelled horizontal range and height of points. Without branches, as azimuthOf().
+SAW_NDT_VECTOR_CODE void measureBlock(std::size_t count, const BlockGeometry geometry, const float* __restrict x,
+                                      const float* __restrict y, const float* __restrict z,
+                                      std::int32_t* __restrict column, float* __restrict range,
+                                      float* __restrict horizontal_range, float* __restrict height) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float squared_range = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+    // Not a number compares false; an infinite coordinate, or one whose square overflows, gives infinity.
+    const bool valid = squared_range > 0.0F && squared_range <= std::numeric_limits<float>::max();
+    const float safe_squared_range = valid ? squared_range : 0.0F;
+    const float place = valid ? azimuthOf(x[i], y[i]) * geometry.columns_per_radian : 0.0F;
+    const float level_height = geometry.pitch_cosine * z[i] - geometry.pitch_sine * x[i];
+    const float squared_horizontal_range = safe_squared_range - level_height * level_height;
+    column[i] = static_cast<std::int32_t>(place < geometry.last_column ? place : geometry.last_column);
+    range[i] = std::sqrt(safe_squared_range);
+    horizontal_range[i] = std::sqrt(squared_horizontal_range > 0.0F ? squared_horizontal_range : 0.0F);
+    height[i] = level_height;
+  }
+}
+
+// `taken` where all bits of the mask are 1, `held` where they are 0.
+inline float blend(std::uint32_t mask, float taken, float held) {
+  std::uint32_t taken_bits;
+  std::uint32_t held_bits;
+  std::memcpy(&taken_bits, &taken, sizeof(taken));
+  std::memcpy(&held_bits, &held, sizeof(held));
+  const std::uint32_t bits = (taken_bits & mask) | (held_bits & ~mask);
+  float result;
+  std::memcpy(&result, &bits, sizeof(result));
+  return result;
+}
+
 }  // namespace
 
 void RangeImage::measurePoints(const ScanView& scan, double mounting_pitch) {
-  points_.azimuth.resize(scan.size);
+  points_.column.resize(scan.size);
   points_.range.resize(scan.size);
   points_.horizontal_range.resize(scan.size);
   points_.height.resize(scan.size);
-  const auto cosine = static_cast<float>(std::cos(mounting_pitch));
-  const auto sine = static_cast<float>(std::sin(mounting_pitch));
+  const BlockGeometry geometry = {static_cast<float>(columns_) / kTurn, static_cast<float>(columns_ - 1),
+                                  static_cast<float>(std::cos(mounting_pitch)),
+                                  static_cast<float>(std::sin(mounting_pitch))};
   std::array<float, kBlock> x;
   std::array<float, kBlock> y;
   std::array<float, kBlock> z;
@@ -56,20 +98,8 @@ void RangeImage::measurePoints(const ScanView& scan, double mounting_pitch) {
       y[i] = point[1];
       z[i] = point[2];
     }
-    float* azimuth = points_.azimuth.data() + begin;
-    float* range = points_.range.data() + begin;
-    float* horizontal_range = points_.horizontal_range.data() + begin;
-    float* height = points_.height.data() + begin;
-    for (std::size_t i = 0; i < count; ++i) {
-      const float squared_range = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-      // Not a number compares false; an infinite coordinate, or one whose square overflows, gives infinity.
-      const bool valid = squared_range > 0.0F && squared_range <= std::numeric_limits<float>::max();
-      const float level_height = cosine * z[i] - sine * x[i];
-      azimuth[i] = azimuthOf(x[i], y[i]);
-      range[i] = valid ? std::sqrt(squared_range) : 0.0F;
-      height[i] = level_height;
-      horizontal_range[i] = std::sqrt(std::max(squared_range - level_height * level_height, 0.0F));
-    }
+    measureBlock(count, geometry, x.data(), y.data(), z.data(), points_.column.data() + begin,
+                 points_.range.data() + begin, points_.horizontal_range.data() + begin, points_.height.data() + begin);
   }
 }
 
@@ -83,27 +113,40 @@ void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double
   measurePoints(scan, mounting_pitch);
   ring_index_.assign(scan, points_, sensor);
 
+  placePoints(scan.size);
+}
+
+void RangeImage::placePoints(std::size_t point_count) {
   const std::size_t pixels = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_);
   range_.assign(pixels, 0.0F);
   horizontal_range_.resize(pixels);
   height_.resize(pixels);
-  pixel_of_point_.resize(scan.size);
-  const float columns_per_radian = static_cast<float>(columns_) / kTurn;
-  const std::vector<std::int16_t>& row_of_point = ring_index_.rows();
-  for (std::size_t i = 0; i < scan.size; ++i) {
-    const float range = points_.range[i];
+  pixel_of_point_.resize(point_count);
+  float* const range = range_.data();
+  float* const horizontal_range = horizontal_range_.data();
+  float* const height = height_.data();
+  std::int32_t* const pixel_of_point = pixel_of_point_.data();
+  const std::int16_t* const row_of_point = ring_index_.rows().data();
+  const float* const point_range = points_.range.data();
+  const std::int32_t* const point_column = points_.column.data();
+  const float* const point_horizontal_range = points_.horizontal_range.data();
+  const float* const point_height = points_.height.data();
+  const std::int32_t columns = columns_;
+  for (std::size_t i = 0; i < point_count; ++i) {
     const std::int32_t row = row_of_point[i];
-    if (range <= 0.0F || row == RingIndex::kNoRow) {
-      pixel_of_point_[i] = kNoPixel;
+    if (point_range[i] <= 0.0F || row == RingIndex::kNoRow) {
+      pixel_of_point[i] = kNoPixel;
       continue;
     }
-    const auto column = std::min(static_cast<std::int32_t>(points_.azimuth[i] * columns_per_radian), columns_ - 1);
-    const std::int32_t pixel = row * columns_ + column;
-    pixel_of_point_[i] = pixel;
-    if (range_[pixel] > 0.0F && range_[pixel] <= range) continue;
-    range_[pixel] = range;
-    horizontal_range_[pixel] = points_.horizontal_range[i];
-    height_[pixel] = points_.height[i];
+    const std::int32_t pixel = row * columns + point_column[i];
+    pixel_of_point[i] = pixel;
+    // Which return is nearer is as good as random, so it must not be a branch: blend bits instead.
+    const float held = range[pixel];
+    const bool takes = (held <= 0.0F) | (point_range[i] < held);
+    const std::uint32_t mask = 0U - static_cast<std::uint32_t>(takes);
+    range[pixel] = blend(mask, point_range[i], held);
+    horizontal_range[pixel] = blend(mask, point_horizontal_range[i], horizontal_range[pixel]);
+    height[pixel] = blend(mask, point_height[i], height[pixel]);
   }
 }
 

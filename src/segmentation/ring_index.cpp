@@ -12,7 +12,7 @@ namespace saw_ndt {
 namespace {
 
 // A smaller fall is a point that parallax or motion compensation put behind its predecessor (10 degrees on KITTI).
-constexpr float kAzimuthFallOfNextRing = static_cast<float>(radiansFromDegrees(200.0));
+constexpr double kAzimuthFallOfNextRingDeg = 200.0;
 
 // Mean misfit of runs and beams above which a scan is not listed ring after ring: on KITTI it is below 0.6 degrees, and
 // above 5 where the points come in another order.
@@ -32,6 +32,21 @@ float medianOf(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// Where the next ring begins, if the azimuth falls at a point with y = 0. That is rounded from just before or just
+// after a whole turn: the point ends the ring above or begins the one below, whichever beam it fits. scan.size: no ring
+// begins.
+std::size_t ringStartAtSeam(const ScanView& scan, const PointMeasurements& points, std::size_t seam) {
+  std::size_t before = seam - 1;
+  while (points.range[before] <= 0.0F) --before;
+  std::size_t after = seam + 1;
+  while (after < scan.size && points.range[after] <= 0.0F) ++after;
+  if (after == scan.size) return scan.size;
+  const float sine = elevationSine(scan, points, seam);
+  const float to_ring_above = std::abs(sine - elevationSine(scan, points, before));
+  const float to_ring_below = std::abs(sine - elevationSine(scan, points, after));
+  return to_ring_above < to_ring_below ? after : seam;
 }
 
 bool isOrganized(const ScanView& scan, int rows) {
@@ -65,34 +80,27 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
   }
 }
 
-bool RingIndex::assignFromFileOrder(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
+bool RingIndex::findRuns(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
+  const auto most_runs = static_cast<std::size_t>(sensor.rows());
+  const auto fall = static_cast<std::int32_t>(sensor.columns * (kAzimuthFallOfNextRingDeg / 360.0));
+  std::int32_t previous_column = -1;
   run_starts_.clear();
-  float previous_azimuth = std::numeric_limits<float>::infinity();
-  std::size_t previous = scan.size;
-  bool on_seam = false;
+  run_starts_.push_back(0);
   for (std::size_t i = 0; i < scan.size; ++i) {
     if (points.range[i] <= 0.0F) continue;
-    if (on_seam) {
-      // The point before this one has y = 0, rounded from just before or just after a whole turn: it ends the ring
-      // above or begins the one below, whichever beam it fits.
-      const std::size_t seam = run_starts_.back();
-      const float sine = elevationSine(scan, points, seam);
-      const float to_ring_above = std::abs(sine - elevationSine(scan, points, previous));
-      const float to_ring_below = std::abs(sine - elevationSine(scan, points, i));
-      if (to_ring_above < to_ring_below) run_starts_.back() = i;
-      on_seam = false;
-    }
-    if (points.azimuth[i] < previous_azimuth - kAzimuthFallOfNextRing) {
-      if (run_starts_.size() > static_cast<std::size_t>(sensor.rows())) return false;
-      on_seam = scan.point(i)[1] == 0.0F && !run_starts_.empty();
-      run_starts_.push_back(i);
-    }
-    previous_azimuth = points.azimuth[i];
-    if (!on_seam) previous = i;
+    const bool falls = points.column[i] < previous_column - fall;
+    previous_column = points.column[i];
+    if (!falls) continue;
+    const std::size_t start = scan.point(i)[1] == 0.0F ? ringStartAtSeam(scan, points, i) : i;
+    if (start == scan.size) continue;
+    if (run_starts_.size() == most_runs) return false;
+    run_starts_.push_back(start);
   }
-  if (on_seam) run_starts_.pop_back();
-  if (run_starts_.empty() || run_starts_.size() > static_cast<std::size_t>(sensor.rows())) return false;
-  run_starts_.front() = 0;
+  return true;
+}
+
+bool RingIndex::assignFromFileOrder(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
+  if (!findRuns(scan, points, sensor)) return false;
   if (!matchRunsToBeams(scan, points, sensor)) return false;
 
   for (std::size_t run = 0; run < run_starts_.size(); ++run) {
@@ -113,6 +121,7 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
     const std::size_t end = run + 1 < runs ? run_starts_[run + 1] : scan.size;
     const std::size_t step = std::max<std::size_t>(1, (end - start) / kSamplesOfRun);
     samples_.clear();
+    samples_.reserve(2 * kSamplesOfRun);
     for (std::size_t i = start; i < end; i += step) {
       if (points.range[i] > 0.0F) samples_.push_back(elevationSine(scan, points, i));
     }

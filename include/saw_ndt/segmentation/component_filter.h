@@ -35,23 +35,27 @@ class ComponentFilter {
              const ComponentOptions& options, std::vector<StructuralLabel>& labels);
 
  private:
-  /// Pixels of one row that are connected one to the next; also a node of a forest of such runs.
+  /// Pixels of one row that are connected one to the next, as a node of a forest. A parent has a smaller number than
+  /// its children, a root is its own parent.
   struct Run {
-    std::int32_t first_pixel;
-    std::int32_t end_pixel;
     std::int32_t parent;
     std::int32_t pixels;
     std::int32_t top_row;
     std::int32_t bottom_row;
   };
 
-  void connectRow(const RangeImage& image, const std::vector<std::uint8_t>& ground, int row, float ratio);
-  void connectRows(const RangeImage& image, int row, float ratio);
+  void connectRow(int row, std::int32_t columns, const std::uint8_t* ground);
+  void chooseComponents(const ComponentOptions& options);
   std::int32_t rootOf(std::int32_t run);
   void unite(std::int32_t first, std::int32_t second);
 
+  std::int32_t run_end_ = 0;
   std::vector<Run> runs_;
   std::vector<std::int32_t> run_of_pixel_;
+  std::vector<StructuralLabel> label_of_run_;
+  std::vector<std::int32_t> links_;
+  std::vector<float> current_;
+  std::vector<float> above_;
 };
 
 }  // namespace saw_ndt

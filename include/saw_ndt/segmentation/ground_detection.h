@@ -26,23 +26,21 @@ struct GroundOptions {
 
   /// Inclination: greatest inclination in degrees between vertically adjacent pixels of ground, 0 to 90.
   double inclination_limit_deg = 10.0;
-  /// Inclination: beams above this elevation in degrees never see ground. The default leaves an HDL-64E its lowest 50
-  /// beams.
+  /// Inclination: beams above this elevation in degrees never see ground. An HDL-64E is left its lowest 51 beams.
   double inclination_top_elevation_deg = -2.0;
 
   /// Growing: height of the sensor above ground in metres; 0: estimated in each scan.
   double sensor_height_m = 0.0;
-  /// Growing: greatest slope in degrees from one ground return to the next of the same column, 0 to 60.
-  double step_slope_deg = 7.0;
-  /// Growing: what the height of the next ground return may miss beyond that slope, in metres: roughness and range
-  /// noise.
+  /// Growing: greatest slope of ground in degrees, 0 to 60.
+  double slope_deg = 8.0;
+  /// Growing: by how many metres the height of a ground return may miss that of the last one in its column, beyond the
+  /// slope: roughness and range noise.
   double step_tolerance_m = 0.06;
-  /// Growing: greatest slope in degrees that ground follows over longer distances, 0 to 60.
-  double profile_slope_deg = 6.0;
-  /// Growing: what ground may stand out from that slower profile, in metres: a kerb.
+  /// Growing: by how many metres ground may stand out from a profile that rises no faster than the slope: a kerb. It
+  /// keeps ground from climbing a wall by many small steps.
   double profile_tolerance_m = 0.15;
-  /// Growing: how often each pixel is compared with its neighbours, 0 to 10.
-  int smoothing_passes = 2;
+  /// Growing: whether each pixel is compared with its eight neighbours at last.
+  bool smooths = true;
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
@@ -59,7 +57,7 @@ class GroundDetection {
  private:
   static void detectByInclination(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
                                   std::vector<std::uint8_t>& ground);
-  void grow(const RangeImage& image, const GroundOptions& options, std::vector<std::uint8_t>& ground);
+  void grow(const RangeImage& image, const GroundOptions& options);
   float estimatedSensorHeight(const RangeImage& image, const GroundOptions& options);
   void smooth(const RangeImage& image, std::vector<std::uint8_t>& ground);
 
@@ -67,9 +65,10 @@ class GroundDetection {
   std::vector<float> last_height_;
   std::vector<float> profile_height_;
   std::vector<float> candidate_heights_;
-  std::vector<std::uint8_t> before_;
-  std::vector<std::uint8_t> column_returns_;
-  std::vector<std::uint8_t> column_ground_;
+  std::vector<std::uint8_t> states_;
+  std::vector<std::uint8_t> no_returns_;
+  std::vector<std::uint8_t> padded_returns_;
+  std::vector<std::uint8_t> padded_ground_;
 };
 
 }  // namespace saw_ndt

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -41,6 +42,7 @@ class RangeImage {
 
  private:
   void measurePoints(const ScanView& scan, double mounting_pitch);
+  void placePoints(std::size_t point_count);
 
   int rows_ = 0;
   int columns_ = 0;

@@ -19,7 +19,7 @@ enum class VerticalIndexSource {
 
 /// What projection needs of every point, in input order. Memory is kept between scans.
 struct PointMeasurements {
-  std::vector<float> azimuth;           ///< radians, 0 to 2 pi
+  std::vector<std::int32_t> column;     ///< of the range image; means nothing where range is 0
   std::vector<float> range;             ///< metres; 0 where the point is not finite or at the origin
   std::vector<float> horizontal_range;  ///< metres, levelled
   std::vector<float> height;            ///< metres, levelled
@@ -41,6 +41,7 @@ class RingIndex {
   VerticalIndexSource source() const { return source_; }
 
  private:
+  bool findRuns(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
   bool assignFromFileOrder(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
   void assignFromElevation(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
   void putLowestRowLast(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
