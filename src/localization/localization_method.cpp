@@ -10,11 +10,11 @@ namespace {
 
 const std::vector<LocalizationMethod>& methods() {
   static const std::vector<LocalizationMethod> all = {
-      {"weighted", true, 0.5, true, ConfidenceOptions(), 0.5},
-      {"weighted-s50", true, 0.5, true, ConfidenceOptions::paper(), 0.1},
-      {"weighted-s100", true, 1.0, true, ConfidenceOptions::paper(), 0.1},
-      {"unweighted-s50", true, 0.5, false, ConfidenceOptions::paper(), 0.1},
-      {"classical", false, 1.0, false, ConfidenceOptions::uniform(), 0.1},
+      {"weighted", true, 0.5, true, ConfidenceOptions(), 0.5, 0.3},
+      {"weighted-s50", true, 0.5, true, ConfidenceOptions::paper(), 0.1, 0.55},
+      {"weighted-s100", true, 1.0, true, ConfidenceOptions::paper(), 0.1, 0.55},
+      {"unweighted-s50", true, 0.5, false, ConfidenceOptions::paper(), 0.1, 0.55},
+      {"classical", false, 1.0, false, ConfidenceOptions::uniform(), 0.1, 0.55},
   };
   return all;
 }
@@ -25,6 +25,7 @@ void LocalizationMethod::check() const {
   checkOption(ground_ratio >= 0.0 && ground_ratio <= 1.0, "ground_ratio", ground_ratio, "between 0 and 1");
   checkOption(mismatch_penalty >= 0.0 && mismatch_penalty <= 1.0, "mismatch_penalty", mismatch_penalty,
               "between 0 and 1");
+  checkOption(outlier_ratio > 0.0 && outlier_ratio < 1.0, "outlier_ratio", outlier_ratio, "between 0 and 1, exclusive");
   confidence.check();
 }
 

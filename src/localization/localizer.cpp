@@ -83,6 +83,7 @@ Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const Localize
   }
   options_.alignment.use_weights = options_.method.use_weights;
   options_.alignment.mismatch_penalty = options_.method.mismatch_penalty;
+  options_.alignment.outlier_ratio = options_.method.outlier_ratio;
 }
 
 const SourcePoints& Localizer::makeSource(const ScanView& scan, StageTimes& times) {

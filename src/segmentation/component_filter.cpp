@@ -62,8 +62,8 @@ SAW_NDT_VECTOR_CODE void linkPixels(std::size_t count, float ratio_along, float 
 void ComponentOptions::check() const {
   checkOption(connection_angle_deg > 0.0 && connection_angle_deg < 90.0, "connection_angle_deg", connection_angle_deg,
               "above 0 and below 90");
-  checkOption(minimum_pixels >= 1, "minimum_pixels", minimum_pixels, "at least 1");
-  checkOption(minimum_pixels_tall >= 1, "minimum_pixels_tall", minimum_pixels_tall, "at least 1");
+  checkOption(minimum_points >= 1, "minimum_points", minimum_points, "at least 1");
+  checkOption(minimum_points_tall >= 1, "minimum_points_tall", minimum_points_tall, "at least 1");
   checkOption(minimum_rings_tall >= 1, "minimum_rings_tall", minimum_rings_tall, "at least 1");
 }
 
@@ -85,7 +85,7 @@ void ComponentFilter::label(const RangeImage& image, const SensorModel& sensor, 
     const double apart_deg = row > 0 ? sensor.elevations_deg[row - 1] - sensor.elevations_deg[row] : 0.0;
     const float across = connectionRatio(apart_deg, options.connection_angle_deg);
     linkPixels(columns, along, across, current_.data(), above_.data() + 1, links_.data());
-    connectRow(row, image.columns(), ground.data() + begin);
+    connectRow(row, image, ground.data() + begin);
     std::swap(current_, above_);
   }
 
@@ -94,7 +94,9 @@ void ComponentFilter::label(const RangeImage& image, const SensorModel& sensor, 
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) labels[pixel] = label_of_run_[run_of_pixel_[pixel]];
 }
 
-void ComponentFilter::connectRow(int row, std::int32_t columns, const std::uint8_t* ground) {
+void ComponentFilter::connectRow(int row, const RangeImage& image, const std::uint8_t* ground) {
+  const std::int32_t columns = image.columns();
+  const std::uint16_t* const returns = image.returns().data() + static_cast<std::ptrdiff_t>(row) * columns;
   const std::int32_t first_run = run_end_;
   std::int32_t run = first_run - 1;
   std::int32_t* const run_of_pixel = run_of_pixel_.data() + static_cast<std::ptrdiff_t>(row) * columns;
@@ -112,7 +114,7 @@ void ComponentFilter::connectRow(int row, std::int32_t columns, const std::uint8
       runs[run] = {run, 0, row, row};
       last_above = 0;
     }
-    ++runs[run].pixels;
+    runs[run].points += returns[column];
     run_of_pixel[column] = run;
     if ((link & kLinkedAbove) == 0) continue;
     const std::int32_t above = run_of_pixel[column - columns];
@@ -129,7 +131,7 @@ void ComponentFilter::chooseComponents(const ComponentOptions& options) {
     const Run& run = runs_[index];
     if (run.parent == index) continue;
     Run& parent = runs_[run.parent];
-    parent.pixels += run.pixels;
+    parent.points += run.points;
     parent.bottom_row = std::max(parent.bottom_row, run.bottom_row);
   }
   label_of_run_.reserve(runs_.size());  // the number of runs changes from scan to scan of one size
@@ -144,9 +146,9 @@ void ComponentFilter::chooseComponents(const ComponentOptions& options) {
     }
     // 4-connected: the rows of a component have no gap, and its root is in the topmost.
     const int rings = run.bottom_row - run.top_row + 1;
-    const bool tall = run.pixels >= options.minimum_pixels_tall && rings >= options.minimum_rings_tall;
+    const bool tall = run.points >= options.minimum_points_tall && rings >= options.minimum_rings_tall;
     label_of_run_[index] =
-        tall || run.pixels >= options.minimum_pixels ? StructuralLabel::NonGround : StructuralLabel::Noise;
+        tall || run.points >= options.minimum_points ? StructuralLabel::NonGround : StructuralLabel::Noise;
   }
 }
 

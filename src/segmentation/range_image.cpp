@@ -121,10 +121,12 @@ void RangeImage::placePoints(std::size_t point_count) {
   range_.assign(pixels, 0.0F);
   horizontal_range_.resize(pixels);
   height_.resize(pixels);
+  returns_.assign(pixels, 0);
   pixel_of_point_.resize(point_count);
   float* const range = range_.data();
   float* const horizontal_range = horizontal_range_.data();
   float* const height = height_.data();
+  std::uint16_t* const returns = returns_.data();
   std::int32_t* const pixel_of_point = pixel_of_point_.data();
   const std::int16_t* const row_of_point = ring_index_.rows().data();
   const float* const point_range = points_.range.data();
@@ -140,6 +142,8 @@ void RangeImage::placePoints(std::size_t point_count) {
     }
     const std::int32_t pixel = row * columns + point_column[i];
     pixel_of_point[i] = pixel;
+    returns[pixel] =
+        static_cast<std::uint16_t>(returns[pixel] + (returns[pixel] != std::numeric_limits<std::uint16_t>::max()));
     // Which return is nearer is as good as random, so it must not be a branch: blend bits instead.
     const float held = range[pixel];
     const bool takes = (held <= 0.0F) | (point_range[i] < held);

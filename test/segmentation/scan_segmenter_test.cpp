@@ -247,8 +247,8 @@ TEST(SegmentationOptions, NamesTheFieldThatIsWrong) {
   options.ground.step_tolerance_m = -1.0;
   expectNamed(options, "step_tolerance_m");
   options = SegmentationOptions();
-  options.components.minimum_pixels = 0;
-  expectNamed(options, "minimum_pixels");
+  options.components.minimum_points = 0;
+  expectNamed(options, "minimum_points");
   options = SegmentationOptions();
   options.ground.inclination_limit_deg = std::numeric_limits<double>::quiet_NaN();
   expectNamed(options, "inclination_limit_deg");

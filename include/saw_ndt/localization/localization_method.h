@@ -15,6 +15,7 @@ struct LocalizationMethod {
   bool use_weights = true;            ///< W_ij of eq. (1) of the paper, or 1
   ConfidenceOptions confidence;       ///< of map and source points; a label of confidence 0 takes no part
   double mismatch_penalty = 0.1;      ///< lambda_m
+  double outlier_ratio = 0.55;        ///< of Magnusson's score function, in (0, 1)
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;

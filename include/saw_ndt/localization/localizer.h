@@ -33,7 +33,7 @@ struct LocalizerOptions {
   double source_voxel_size_m = 0.2;  ///< see SourceVoxelFilter
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< mounting of the LiDAR on the vehicle
   MotionPredictionOptions prediction;
-  AlignmentOptions alignment;  ///< use_weights and mismatch_penalty are the method's
+  AlignmentOptions alignment;  ///< use_weights, mismatch_penalty and outlier_ratio are the method's
   AcceptanceOptions acceptance;
 
   /// Throws std::invalid_argument that names the field and its value.

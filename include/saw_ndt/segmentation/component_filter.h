@@ -14,10 +14,10 @@ struct ComponentOptions {
   /// Neighbours are connected where the line between them makes more than this angle in degrees with the line of sight
   /// to the farther one, above 0 and below 90.
   double connection_angle_deg = 60.0;
-  /// A component of this many pixels or more is kept, at least 1.
-  int minimum_pixels = 30;
-  /// So is a smaller one of this many pixels or more, at least 1, if it spans enough rings.
-  int minimum_pixels_tall = 5;
+  /// A component of this many points or more, all returns of its pixels counted, is kept, at least 1.
+  int minimum_points = 30;
+  /// So is a smaller one of this many points or more, at least 1, if it spans enough rings.
+  int minimum_points_tall = 5;
   /// Rings that such a smaller component must span, at least 1.
   int minimum_rings_tall = 3;
 
@@ -39,12 +39,12 @@ class ComponentFilter {
   /// its children, a root is its own parent.
   struct Run {
     std::int32_t parent;
-    std::int32_t pixels;
+    std::int32_t points;
     std::int32_t top_row;
     std::int32_t bottom_row;
   };
 
-  void connectRow(int row, std::int32_t columns, const std::uint8_t* ground);
+  void connectRow(int row, const RangeImage& image, const std::uint8_t* ground);
   void chooseComponents(const ComponentOptions& options);
   std::int32_t rootOf(std::int32_t run);
   void unite(std::int32_t first, std::int32_t second);

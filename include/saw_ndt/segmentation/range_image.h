@@ -32,6 +32,8 @@ class RangeImage {
   const std::vector<float>& horizontalRange() const { return horizontal_range_; }
   /// Levelled height above the sensor in metres; defined where range() is not 0.
   const std::vector<float>& height() const { return height_; }
+  /// How many points fell into the pixel, at most 65535.
+  const std::vector<std::uint16_t>& returns() const { return returns_; }
 
   /// Pixel index row * columns() + column of every point in input order; kNoPixel where it is not finite, at the
   /// sensor's origin, or outside of what the sensor sees.
@@ -49,6 +51,7 @@ class RangeImage {
   std::vector<float> range_;
   std::vector<float> horizontal_range_;
   std::vector<float> height_;
+  std::vector<std::uint16_t> returns_;
   std::vector<std::int32_t> pixel_of_point_;
   PointMeasurements points_;
   RingIndex ring_index_;
