@@ -201,6 +201,11 @@ TEST_F(MapFile, RefusesAbsurdSizesBeforeAllocating) {
       {120, 0, "does not follow"},
       {140, 0, "out of range"},  // points of an entry
       {140, 3, "out of range"},  // more than the map has
+      {140, 2, "the number of points"},
+      {148, 32769, "out of range"},  // sum of a point more than half a voxel out
+      {148, 1ULL << 63, "out of range"},
+      {172, (1ULL << 30) + 1, "out of range"},  // its product
+      {172, kHuge >> 1, "out of range"},
       {140, kHuge, "out of range"},
   };
   for (const auto& c : cases) {
