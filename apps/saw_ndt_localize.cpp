@@ -2,8 +2,8 @@
 
 #include "app_options.h"
 #include "output_folder.h"
+#include "pose_argument.h"
 #include "progress_bar.h"
-#include "saw_ndt/common/geometry.h"
 #include "saw_ndt/evaluation/sequence_localization.h"
 #include "saw_ndt/io/scan_selection.h"
 #include "segmentation_options.h"
@@ -16,15 +16,6 @@ constexpr char kDescription[] =
     "is printed too. A scan that is rejected keeps the pose that was predicted for it. Scans are segmented with the same "
     "options as those of the map. Where reference poses exist, the first one is the initial pose and the others tell "
     "the errors.";
-
-Eigen::Isometry3d transformOf(const std::vector<double>& xyz_rpy_deg) {
-  saw_ndt::Vector6d values;
-  for (int i = 0; i < 6; ++i) {
-    values[i] = i < 3 ? xyz_rpy_deg[static_cast<std::size_t>(i)]
-                      : saw_ndt::radiansFromDegrees(xyz_rpy_deg[static_cast<std::size_t>(i)]);
-  }
-  return saw_ndt::transformFromXyzRpy(values);
-}
 
 }  // namespace
 
@@ -45,9 +36,10 @@ int main(int argc, char** argv) {
   app.addOption("skip", &skip_s, "SECONDS", "time at the start that the errors leave out");
   app.addOption("poses", &poses_file, "FILE",
                 "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
-  app.addOption("initial-pose", &initial_pose, "X,Y,Z,ROLL,PITCH,YAW",
+  app.addOption("initial-pose", &initial_pose, saw_ndt::kPosePlaceholder,
                 "pose of the base at the first scan, metres and degrees (default: its reference pose)");
-  app.addOption("base-lidar", &base_lidar, "X,Y,Z,ROLL,PITCH,YAW", "pose of the LiDAR on the base, metres and degrees");
+  app.addOption("base-lidar", &base_lidar, saw_ndt::kPosePlaceholder,
+                "pose of the LiDAR on the base, metres and degrees");
   app.addOption("source-voxel", &options.source_voxel_size_m, "METRES", "edge of a source voxel, 0 for none");
   app.addOption("max-iterations", &options.alignment.max_iterations, "N", "steps of an alignment at most");
   app.addOption("min-likelihood", &options.acceptance.min_likelihood, "X",
@@ -63,7 +55,7 @@ int main(int argc, char** argv) {
     options.method = saw_ndt::LocalizationMethod::named(method);
     options.segmentation = segmentation.options();
     options.alignment.threads = app.threads();
-    options.T_base_lidar = transformOf(base_lidar);
+    options.T_base_lidar = saw_ndt::transformOf(base_lidar);
     saw_ndt::checkedUsage([&] { options.check(); });
     const saw_ndt::KittiSequence sequence(sequence_folder, poses_file);
     const std::vector<int> selected =
@@ -80,7 +72,7 @@ int main(int argc, char** argv) {
     saw_ndt::Localizer localizer(
         std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(map_file, weighting)), options);
     localizer.setInitialPose(app.isGiven("initial-pose")
-                                 ? transformOf(initial_pose)
+                                 ? saw_ndt::transformOf(initial_pose)
                                  : reference_lidar[static_cast<std::size_t>(selected.front())] *
                                        options.T_base_lidar.inverse());
 

@@ -94,13 +94,19 @@ std::vector<std::string> pointCloudFields(const std::filesystem::path& path) {
 
 template <typename PointT>
 void writePcd(const std::filesystem::path& path, const pcl::PointCloud<PointT>& cloud) {
-  if (cloud.empty()) throw Error(path.string(), "", "a cloud without points cannot be written as PCD");
-  AtomicOutput output(path);
   pcl::PCLPointCloud2 fields;
   pcl::toPCLPointCloud2(cloud, fields);
+  writePcd(path, fields, cloud.sensor_origin_, cloud.sensor_orientation_);
+}
+
+void writePcd(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
+              const Eigen::Quaternionf& sensor_orientation) {
+  if (cloud.width == 0 || cloud.height == 0) {
+    throw Error(path.string(), "", "a cloud without points cannot be written as PCD");
+  }
+  AtomicOutput output(path);
   const QuietPcl quiet;
-  if (pcl::PCDWriter().writeBinaryCompressed(output.stream(), fields, cloud.sensor_origin_, cloud.sensor_orientation_) <
-      0) {
+  if (pcl::PCDWriter().writeBinaryCompressed(output.stream(), cloud, sensor_origin, sensor_orientation) < 0) {
     throw Error(path.string(), "", "PCL could not write it");
   }
   output.commit();

@@ -140,8 +140,8 @@ Header readHeader(MapReader& reader) {
   reader.read(magic_size, 4, bytes);
   const auto version = Decoder(bytes.data()).take<std::uint32_t>();
   if (version != kVersion) {
-    reader.fail(magic_size, "map version " + std::to_string(version) + ", this program reads version " +
-                                std::to_string(kVersion));
+    reader.fail(magic_size,
+                "map version " + std::to_string(version) + ", this program reads version " + std::to_string(kVersion));
   }
   reader.read(0, kHeaderBytes, bytes);
   Decoder decoder(bytes.data() + magic_size + 4);
@@ -204,6 +204,25 @@ std::vector<Tile> readDirectory(MapReader& reader, const Header& header) {
   return tiles;
 }
 
+// Whether points of a voxel can have these sums: none lies further than half a voxel from its centre. Keeps a file that
+// was made to mislead from overflowing what is computed with them.
+bool canBeSums(const VoxelSums& sums) {
+  constexpr std::uint64_t kHalf = kStepsPerVoxel / 2;
+  constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 33;
+  if (sums.count == 0 || sums.count > kMostPoints) return false;
+  const auto within = [](std::int64_t value, std::uint64_t limit) {
+    const auto bits = static_cast<std::uint64_t>(value);
+    return (value < 0 ? std::uint64_t{0} - bits : bits) <= limit;
+  };
+  for (const std::int64_t value : sums.sum) {
+    if (!within(value, sums.count * kHalf)) return false;
+  }
+  for (const std::int64_t value : sums.product) {
+    if (!within(value, sums.count * kHalf * kHalf)) return false;
+  }
+  return true;
+}
+
 void readTile(MapReader& reader, const Tile& tile, MapFileContent& content) {
   std::vector<char> bytes;
   reader.read(tile.offset, tile.entry_count * kEntryBytes, bytes);
@@ -225,7 +244,7 @@ void readTile(MapReader& reader, const Tile& tile, MapFileContent& content) {
     entry.sums.count = decoder.take<std::uint64_t>();
     for (std::int64_t& value : entry.sums.sum) value = decoder.take<std::int64_t>();
     for (std::int64_t& value : entry.sums.product) value = decoder.take<std::int64_t>();
-    valid = valid && entry.sums.count > 0 && entry.sums.count <= content.origin.point_count;
+    valid = valid && canBeSums(entry.sums) && entry.sums.count <= content.origin.point_count;
     if (!valid || (!content.entries.empty() && !inMapOrder(content.entries.back(), entry))) {
       reader.fail(tile.offset + i * kEntryBytes, "damaged: an entry is out of range or out of order");
     }
@@ -297,6 +316,11 @@ MapFileContent readMapFile(const std::string& path) {
   for (const Tile& tile : tiles) readTile(reader, tile, content);
   if (content.entries.size() != header.entry_count) {
     reader.fail(kHeaderBytes, "damaged: the directory and the header disagree on the number of entries");
+  }
+  std::uint64_t point_count = 0;
+  for (const LabelledVoxelSums& entry : content.entries) point_count += entry.sums.count;
+  if (point_count != content.origin.point_count) {
+    reader.fail(kHeaderBytes, "damaged: the entries and the header disagree on the number of points");
   }
   return content;
 }

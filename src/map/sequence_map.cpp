@@ -1,5 +1,6 @@
 #include "saw_ndt/map/sequence_map.h"
 
+#include <atomic>
 #include <exception>
 
 #include "saw_ndt/common/threads.h"
@@ -28,7 +29,7 @@ WeightedMapBuilder buildSequenceMap(const KittiSequence& sequence, const std::ve
   WeightedMapBuilder map(options.resolution_m);
   const auto scan_count = static_cast<std::ptrdiff_t>(scans.size());
   std::exception_ptr failure;
-  std::ptrdiff_t failed_scan = scan_count;
+  std::atomic<std::ptrdiff_t> failed_scan{scan_count};
 #pragma omp parallel num_threads(threadCount(options.threads))
   {
     WeightedMapBuilder part(options.resolution_m);
@@ -36,6 +37,7 @@ WeightedMapBuilder buildSequenceMap(const KittiSequence& sequence, const std::ve
     std::vector<StructuralLabel> labels;
 #pragma omp for schedule(dynamic)
     for (std::ptrdiff_t i = 0; i < scan_count; ++i) {
+      if (i > failed_scan) continue;
       try {
         const int scan = scans[static_cast<std::size_t>(i)];
         const pcl::PointCloud<pcl::PointXYZI> cloud = sequence.readScan(scan);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/map/map_file.h"
@@ -17,6 +19,10 @@ WeightedVoxelMap::WeightedVoxelMap(const MapOrigin& origin, std::vector<Labelled
   weighting_.check();
   if (!std::is_sorted(entries_.begin(), entries_.end(), inMapOrder)) {
     std::sort(entries_.begin(), entries_.end(), inMapOrder);
+  }
+  const auto not_ascending = [](const LabelledVoxelSums& a, const LabelledVoxelSums& b) { return !inMapOrder(a, b); };
+  if (std::adjacent_find(entries_.begin(), entries_.end(), not_ascending) != entries_.end()) {
+    throw std::invalid_argument("entries: a voxel and label is given twice");
   }
   fine_ = NdtLevel::fromSums(entries_, origin.resolution_m, 1, weighting_);
   if (weighting_.coarse_factor > 1) {

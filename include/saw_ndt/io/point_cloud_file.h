@@ -1,8 +1,10 @@
 #pragma once
 
+#include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -23,5 +25,10 @@ std::vector<std::string> pointCloudFields(const std::filesystem::path& path);
 /// format cannot hold.
 template <typename PointT>
 void writePcd(const std::filesystem::path& path, const pcl::PointCloud<PointT>& cloud);
+
+/// The same for points of any type, as pcl::toPCLPointCloud2() gives them.
+void writePcd(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
+              const Eigen::Vector4f& sensor_origin = Eigen::Vector4f::Zero(),
+              const Eigen::Quaternionf& sensor_orientation = Eigen::Quaternionf::Identity());
 
 }  // namespace saw_ndt

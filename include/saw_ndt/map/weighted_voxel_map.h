@@ -24,7 +24,7 @@ class WeightedVoxelMap {
  public:
   WeightedVoxelMap() = default;
   /// @param entries    each voxel and label at most once, in any order
-  /// @throws std::invalid_argument for options that do not hold
+  /// @throws std::invalid_argument for options that do not hold, or an entry given twice
   WeightedVoxelMap(const MapOrigin& origin, std::vector<LabelledVoxelSums> entries,
                    const VoxelWeighting& weighting = {});
 

@@ -1,0 +1,165 @@
+#include <gtest/gtest.h>
+#include <pcl/common/transforms.h>
+
+#include <nlohmann/json.hpp>
+
+#include "map/map_fixtures.h"
+#include "pose_argument.h"
+#include "real_data.h"
+#include "run_app_program.h"
+#include "saw_ndt/common/geometry.h"
+#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/io/point_cloud_file.h"
+
+namespace saw_ndt {
+namespace {
+
+Eigen::Isometry3d transformIn(const nlohmann::json& json) {
+  Eigen::Isometry3d T;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) T(row, column) = json.at("T_target_source").at(row).at(column);
+  }
+  return T;
+}
+
+void expectNear(const Eigen::Isometry3d& T, const Eigen::Isometry3d& expected, double metres, double degrees) {
+  EXPECT_LT((T.translation() - expected.translation()).norm(), metres) << T.matrix();
+  EXPECT_LT(degreesFromRadians(rotationAngle(T.linear().transpose() * expected.linear())), degrees) << T.matrix();
+}
+
+class AlignApp : public ::testing::Test {
+ protected:
+  AlignApp() {
+    const pcl::PointCloud<pcl::PointXYZL> target = mixedCloud(1, 12000);
+    pcl::PointCloud<pcl::PointXYZL> source;
+    pcl::transformPointCloud(mixedCloud(2, 6000), source, T_target_source.inverse().matrix());
+    writePcd(folder.path() / "target.pcd", target);
+    writePcd(folder.path() / "source.pcd", source);
+    writePcd(folder.path() / "plain_target.pcd", withoutLabels(target));
+    writePcd(folder.path() / "plain_source.pcd", withoutLabels(source));
+  }
+
+  AppResult run(const std::string& arguments) const { return runAppProgram(SAW_NDT_APP, arguments); }
+  std::string quoted(const std::string& name) const { return "'" + (folder.path() / name).string() + "' "; }
+
+  nlohmann::json jsonOf(const std::string& arguments) const {
+    const AppResult result = run(arguments + " -json");
+    EXPECT_EQ(result.exit_code, 0) << arguments << '\n' << result.errors;
+    return nlohmann::json::parse(result.output, nullptr, false);
+  }
+
+  TemporaryFolder folder;
+  Eigen::Isometry3d T_target_source = transformOf({0.4, -0.25, 0.1, 0.5, -0.4, 2.0});
+};
+
+TEST_F(AlignApp, FindsTheTransformWithAndWithoutLabels) {
+  for (const auto& [arguments, weighted] :
+       {std::pair<std::string, bool>{quoted("source.pcd") + quoted("target.pcd"), true},
+        {quoted("source.pcd") + quoted("target.pcd") + "-classical", false},
+        {quoted("plain_source.pcd") + quoted("target.pcd"), false},
+        {quoted("plain_source.pcd") + quoted("plain_target.pcd"), false}}) {
+    SCOPED_TRACE(arguments);
+    const nlohmann::json json = jsonOf(arguments);
+    EXPECT_EQ(json.at("weighted"), weighted);
+    EXPECT_EQ(json.at("converged"), true);
+    EXPECT_GE(json.at("iterations"), 1);
+    EXPECT_GT(json.at("likelihood").get<double>(), 0.0);
+    EXPECT_EQ(json.at("source_points"), 6000);
+    EXPECT_FALSE(json.contains("fitness_m2"));
+    expectNear(transformIn(json), T_target_source, 0.03, 0.3);
+  }
+}
+
+TEST_F(AlignApp, EveryWayToSearchEndsAtTheSamePose) {
+  const std::string files = quoted("source.pcd") + quoted("target.pcd");
+  for (const std::string neighbors : {"radius", "direct26", "direct7", "direct1"}) {
+    SCOPED_TRACE(neighbors);
+    expectNear(transformIn(jsonOf(files + "-neighbors " + neighbors + " -guess 0.35,-0.2,0.1,0,0,1.5")),
+               T_target_source, 0.05, 0.5);
+  }
+  const nlohmann::json pcl_like =
+      jsonOf(files + "-optimizer newton-more-thuente -guess 0.35,-0.2,0.1,0,0,1.5 -max-iterations 200");
+  expectNear(transformIn(pcl_like), T_target_source, 0.05, 0.5);
+}
+
+TEST_F(AlignApp, WritesTheMovedSourceAndTellsItsFitness) {
+  const std::string files = quoted("source.pcd") + quoted("target.pcd") + quoted("out.pcd");
+  const nlohmann::json json = jsonOf(files + "-fitness -source-voxel 0.2 -resolution 0.8");
+  EXPECT_LT(json.at("source_points"), 6000);
+  EXPECT_LT(json.at("fitness_m2").get<double>(), 0.5);
+  const auto moved = readPointCloud<pcl::PointXYZL>(folder.path() / "out.pcd");
+  const auto source = readPointCloud<pcl::PointXYZL>(folder.path() / "source.pcd");
+  ASSERT_EQ(moved.size(), source.size());
+  const Eigen::Isometry3d T = transformIn(json);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    ASSERT_LT((T * source[i].getVector3fMap().cast<double>() - moved[i].getVector3fMap().cast<double>()).norm(), 1e-4);
+    ASSERT_EQ(moved[i].label, source[i].label);
+  }
+}
+
+TEST_F(AlignApp, TextTellsTheSameAsJson) {
+  const std::string files = quoted("source.pcd") + quoted("target.pcd");
+  const nlohmann::json json = jsonOf(files);
+  const AppResult text = run(files);
+  ASSERT_EQ(text.exit_code, 0) << text.errors;
+  std::istringstream lines(text.output);
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      double value = 0.0;
+      ASSERT_TRUE(lines >> value);
+      EXPECT_NEAR(value, json.at("T_target_source").at(row).at(column).get<double>(), 1e-9);
+    }
+  }
+  EXPECT_NE(text.output.find("\nyaw_deg         " + json.at("yaw_deg").dump() + "\n"), std::string::npos)
+      << text.output;
+  expectNear(transformOf({json.at("x_m"), json.at("y_m"), json.at("z_m"), json.at("roll_deg"), json.at("pitch_deg"),
+                          json.at("yaw_deg")}),
+             transformIn(json), 1e-9, 1e-6);
+  EXPECT_EQ(jsonOf(files + "-threads 1"), jsonOf(files + "-threads 2"));
+}
+
+TEST_F(AlignApp, SaysWhatIsWrongAndWritesNothing) {
+  auto bad_labels = mixedCloud(1, 100);
+  bad_labels[7].label = 40;
+  writePcd(folder.path() / "classes.pcd", bad_labels);
+  folder.write("short.bin", "12345");
+  const std::string files = quoted("source.pcd") + quoted("target.pcd");
+  const struct {
+    std::string arguments;
+    int exit_code;
+    std::string reason;
+  } cases[] = {
+      {quoted("source.pcd"), 2, "missing TARGET"},
+      {files + "-resolution 0", 2, "resolution = 0: must be positive"},
+      {files + "-max-iterations 0", 2, "max-iterations = 0"},
+      {files + "-source-voxel -1", 2, "source-voxel = -1"},
+      {files + "-guess 1,2,3", 2, "'1,2,3' has 3 numbers"},
+      {files + "-neighbors direct8", 2, "direct8"},
+      {quoted("none.pcd") + quoted("target.pcd"), 1, "none.pcd: No such file"},
+      {quoted("source.pcd") + quoted("short.bin"), 1, "short.bin: offset 0"},
+      {quoted("classes.pcd") + quoted("target.pcd"), 1, "classes.pcd: point 7: label 40"},
+      {files + quoted("out.pcd") + "-guess 500,0,0,0,0,0", 1, "source.pcd: could not be aligned to"},
+      {files + quoted("out.pcd") + "-max-iterations 1 -guess 0.8,0.3,0,0,0,5", 1, "iteration limit after 1"},
+      {files + quoted("none/out.pcd"), 1, "none/out.pcd: No such file"},
+  };
+  for (const auto& c : cases) {
+    const AppResult result = run(c.arguments);
+    EXPECT_EQ(result.exit_code, c.exit_code) << c.arguments;
+    EXPECT_NE(result.errors.find(c.reason), std::string::npos) << result.errors;
+    EXPECT_EQ(result.output, "");
+  }
+  EXPECT_EQ(folder.entryCount(), 6U);
+}
+
+TEST_F(AlignApp, RealScans) {
+  if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
+  const KittiSequence sequence(realDataFolder() / "kitti" / "sequences" / "drive_0005");
+  const std::vector<Eigen::Isometry3d> poses = sequence.posesLidar();
+  const nlohmann::json json =
+      jsonOf("'" + sequence.scanPath(2).string() + "' '" + sequence.scanPath(0).string() + "' -source-voxel 0.2");
+  EXPECT_EQ(json.at("weighted"), false);
+  expectNear(transformIn(json), poses[0].inverse() * poses[2], 0.05, 0.2);
+}
+
+}  // namespace
+}  // namespace saw_ndt

@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "real_data.h"
+#include "run_app_program.h"
+#include "saw_ndt/evaluation/segmentation_score.h"
+#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/io/point_cloud_file.h"
+#include "segmentation/synthetic_scan.h"
+
+namespace saw_ndt {
+namespace {
+
+/// Flat ground, and ahead of the sensor a wall across the road, 15 m away and 3 m high.
+pcl::PointCloud<pcl::PointXYZ> roadAndWall() {
+  const SensorModel sensor = SensorModel::named("HDL-64E");
+  return ringOrderedScan(sensor, [&](int row, int column) {
+    const double ground_m = rangeToFlatGround(sensor, row, 40.0);
+    const double elevation = radiansFromDegrees(sensor.elevations_deg[static_cast<std::size_t>(row)]);
+    const double azimuth = (column + 0.5) * 2.0 * kPi / sensor.columns;
+    const double wall_m = 15.0 / (std::cos(elevation) * std::cos(azimuth));
+    const bool on_wall = std::abs(wrappedAngle(azimuth)) < 0.6 && wall_m * std::sin(elevation) < 3.0 - kSensorHeight;
+    return on_wall ? std::min(wall_m, ground_m) : ground_m;
+  });
+}
+
+class SegmentApp : public ::testing::Test {
+ protected:
+  AppResult run(const std::string& arguments) const { return runAppProgram(SAW_NDT_APP, arguments); }
+  std::string quoted(const std::string& name) const { return "'" + (folder.path() / name).string() + "' "; }
+
+  void writeScan(const std::string& name, const pcl::PointCloud<pcl::PointXYZ>& cloud) const {
+    std::string bytes;
+    for (const pcl::PointXYZ& point : cloud) {
+      const float values[] = {point.x, point.y, point.z, 0.25F};
+      bytes.append(reinterpret_cast<const char*>(values), sizeof(values));
+    }
+    folder.write(name, bytes);
+  }
+
+  /// SemanticKITTI: 40 road, 50 building, each with an instance number that does not matter.
+  void writeLabels(const std::string& name, const pcl::PointCloud<pcl::PointXYZ>& cloud) const {
+    std::string bytes;
+    for (const pcl::PointXYZ& point : cloud) {
+      const std::uint32_t label = (point.z < -kSensorHeight + 0.01 ? 40U : 50U) | 7U << 16;
+      bytes.append(reinterpret_cast<const char*>(&label), sizeof(label));
+    }
+    folder.write(name, bytes);
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(SegmentApp, LabelsEveryPointAndScoresTheGround) {
+  const pcl::PointCloud<pcl::PointXYZ> scan = roadAndWall();
+  writeScan("a.bin", scan);
+  writeLabels("a.label", scan);
+  const AppResult result = run(quoted("a.bin") + quoted("a.pcd") + "-labels " + quoted("a.label"));
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  const auto labelled = readPointCloud<pcl::PointXYZL>(folder.path() / "a.pcd");
+  ASSERT_EQ(labelled.size(), scan.size());
+  GroundScore expected;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    ASSERT_EQ(labelled[i].getVector3fMap(), scan[i].getVector3fMap());
+    const bool ground = scan[i].z < -kSensorHeight + 0.01;
+    if (labelled[i].label == 1) ++(ground ? expected.true_positives : expected.false_positives);
+    if (labelled[i].label != 1) ++(ground ? expected.false_negatives : expected.true_negatives);
+  }
+  EXPECT_EQ(json.at("true_positives"), expected.true_positives);
+  EXPECT_EQ(json.at("false_positives"), expected.false_positives);
+  EXPECT_EQ(json.at("false_negatives"), expected.false_negatives);
+  EXPECT_EQ(json.at("true_negatives"), expected.true_negatives);
+  EXPECT_DOUBLE_EQ(json.at("precision"), expected.precision());
+  EXPECT_DOUBLE_EQ(json.at("recall"), expected.recall());
+  EXPECT_DOUBLE_EQ(json.at("iou"), expected.iou());
+  EXPECT_GT(json.at("f1").get<double>(), 0.97);
+  EXPECT_LT(json.at("noise_share").get<double>(), 0.05);
+}
+
+TEST_F(SegmentApp, ReadsPcdAndTellsTheCounts) {
+  const pcl::PointCloud<pcl::PointXYZ> scan = roadAndWall();
+  writePcd(folder.path() / "in.pcd", scan);
+  for (const std::string rule : {"growing", "inclination"}) {
+    const AppResult result = run(quoted("in.pcd") + quoted("out.pcd") + "-ground-rule " + rule);
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(result.output.find("out.pcd: " + std::to_string(scan.size()) + " points, "), std::string::npos);
+    std::size_t counts[3] = {0, 0, 0};
+    for (const pcl::PointXYZL& point : readPointCloud<pcl::PointXYZL>(folder.path() / "out.pcd")) ++counts[point.label];
+    EXPECT_NE(result.output.find(", " + std::to_string(counts[1]) + " ground, " + std::to_string(counts[2]) +
+                                 " non-ground, " + std::to_string(counts[0]) + " noise\n"),
+              std::string::npos)
+        << result.output;
+    EXPECT_GT(counts[1], scan.size() / 2);
+  }
+}
+
+TEST_F(SegmentApp, SaysWhatIsWrongAndWritesNothing) {
+  writeScan("a.bin", roadAndWall());
+  folder.write("short.bin", "12345");
+  folder.write("two.label", std::string(8, '\0'));
+  const std::string good = quoted("a.bin") + quoted("out.pcd");
+  const struct {
+    std::string arguments;
+    int exit_code;
+    std::string reason;
+  } cases[] = {
+      {quoted("a.bin"), 2, "missing OUT.pcd"},
+      {good + "-sensor LMS", 2, "'LMS' is none of"},
+      {good + "-mounting-pitch_deg 120", 2, "mounting_pitch_deg = 120"},
+      {quoted("none.bin") + quoted("out.pcd"), 1, "none.bin: No such file"},
+      {quoted("short.bin") + quoted("out.pcd"), 1, "short.bin: offset 0"},
+      {quoted("a.ply") + quoted("out.pcd"), 1, "a.ply"},
+      {good + "-labels " + quoted("none.label"), 1, "none.label: No such file"},
+      {good + "-labels " + quoted("two.label"), 1, "two.label: 2 labels, where"},
+      {quoted("a.bin") + quoted("none/out.pcd"), 1, "none/out.pcd: No such file"},
+  };
+  for (const auto& c : cases) {
+    const AppResult result = run(c.arguments);
+    EXPECT_EQ(result.exit_code, c.exit_code) << c.arguments;
+    EXPECT_NE(result.errors.find(c.reason), std::string::npos) << result.errors;
+    EXPECT_EQ(result.output, "");
+  }
+  EXPECT_EQ(folder.entryCount(), 3U);
+}
+
+TEST_F(SegmentApp, OfARealScan) {
+  if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
+  const KittiSequence sequence(realDataFolder() / "kitti" / "sequences" / "00");
+  const AppResult result = run("'" + sequence.scanPath(3).string() + "' " + quoted("out.pcd") + "-labels '" +
+                               sequence.labelPath(3).string() + "'");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_GT(json.at("f1").get<double>(), 0.9);
+  const auto labelled = readPointCloud<pcl::PointXYZL>(folder.path() / "out.pcd");
+  const std::vector<std::uint16_t> classes = sequence.readLabels(3);
+  ASSERT_EQ(labelled.size(), classes.size());
+  std::vector<StructuralLabel> labels;
+  for (const pcl::PointXYZL& point : labelled) labels.push_back(structuralLabelFromValue(point.label));
+  EXPECT_EQ(json, nlohmann::json::parse(toJsonText(scoreGround(labels, classes))));
+}
+
+}  // namespace
+}  // namespace saw_ndt

@@ -1,0 +1,278 @@
+#include "saw_ndt/map/map_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "map_fixtures.h"
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/map/map_tile.h"
+#include "temporary_folder.h"
+
+namespace saw_ndt {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 96;
+constexpr std::size_t kTileBytes = 40;
+constexpr std::size_t kEntryBytes = 84;
+
+/// CRC-32 as zlib and PNG define it, written out bit by bit.
+std::uint32_t crc32(const std::string& bytes) {
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (const char byte : bytes) {
+    crc ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1U) != 0U ? 0xEDB88320U : 0U);
+  }
+  return ~crc;
+}
+
+template <typename Value>
+std::string littleEndian(Value value) {
+  std::uint64_t bits = 0;
+  static_assert(sizeof(Value) <= sizeof(bits));
+  std::memcpy(&bits, &value, sizeof(value));
+  std::string bytes;
+  for (std::size_t i = 0; i < sizeof(Value); ++i) bytes += static_cast<char>(bits >> (8 * i));
+  return bytes;
+}
+
+template <typename Value>
+void put(std::string& bytes, std::size_t offset, Value value) {
+  bytes.replace(offset, sizeof(Value), littleEndian(value));
+}
+
+/// Makes the checksums of a file of one tile agree with what its bytes have become.
+void checksum(std::string& bytes) {
+  put(bytes, kHeaderBytes + 12, crc32(bytes.substr(kHeaderBytes + kTileBytes)));
+  put(bytes, 64, crc32(bytes.substr(kHeaderBytes, kTileBytes)));
+  put(bytes, 92, crc32(bytes.substr(0, 92)));
+}
+
+class MapFile : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name = "a.map") const { return (folder.path() / name).string(); }
+
+  std::string bytesOf(const WeightedVoxelMap& map) const {
+    map.save(path("saved.map"));
+    return contentOf(path("saved.map"));
+  }
+
+  void expectRefused(const std::string& content, std::initializer_list<std::string> parts) const {
+    const std::string file = folder.write("damaged.map", content).string();
+    expectThrows<Error>([&] { WeightedVoxelMap::load(file); }, {file});
+    expectThrows<Error>([&] { WeightedVoxelMap::load(file); }, parts);
+  }
+
+  /// Two points of one voxel, ground and non-ground.
+  static WeightedVoxelMap tinyMap() {
+    pcl::PointCloud<pcl::PointXYZL> cloud;
+    cloud.resize(2);
+    cloud[0].getVector3fMap() << -0.5F, 65.75F, 3.0F;
+    cloud[0].label = 1;
+    cloud[1].getVector3fMap() << -0.25F, 65.5F, 3.5F;
+    cloud[1].label = 2;
+    return mapOf(cloud, 1.0);
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(MapFile, TinyMapByteForByte) {
+  // Voxel (-1, 65, 3) is voxel (63, 1, 3) of tile (-1, 1, 0), whose edge is 64 voxels. Half a voxel is 32768 steps.
+  std::string entries = std::string("\x3F\x01\x03\x01", 4) + littleEndian(std::uint64_t{1});
+  for (const std::int64_t sum : {0, 16384, -32768}) entries += littleEndian(sum);
+  for (const std::int64_t product : {0, 0, 0, 268435456, -536870912, 1073741824}) entries += littleEndian(product);
+  entries += std::string("\x3F\x01\x03\x02", 4) + littleEndian(std::uint64_t{1});
+  for (const std::int64_t sum : {16384, 0, 0}) entries += littleEndian(sum);
+  for (const std::int64_t product : {268435456, 0, 0, 0, 0, 0}) entries += littleEndian(product);
+  ASSERT_EQ(entries.size(), 2 * kEntryBytes);
+
+  const std::string directory = littleEndian(std::int32_t{-1}) + littleEndian(std::int32_t{1}) +
+                                littleEndian(std::int32_t{0}) + littleEndian(crc32(entries)) +
+                                littleEndian(std::uint64_t{2}) + littleEndian(std::uint64_t{136}) +
+                                littleEndian(std::uint64_t{0});
+  ASSERT_EQ(directory.size(), kTileBytes);
+
+  std::string header = "SAWNDTM\n" + littleEndian(std::uint32_t{1}) + littleEndian(std::uint32_t{96}) +
+                       std::string("\0\0\0\0\0\0\xF0\x3F", 8) +  // 1.0 as IEEE 754
+                       littleEndian(std::uint32_t{64}) + littleEndian(std::uint32_t{1});
+  for (const std::uint64_t count : {1, 2, 2, 1}) header += littleEndian(count);  // scans, points, entries, tiles
+  header += littleEndian(crc32(directory)) + std::string(24, '\0');
+  header += littleEndian(crc32(header));
+  ASSERT_EQ(header.size(), kHeaderBytes);
+
+  EXPECT_TRUE(bytesOf(tinyMap()) == header + directory + entries);
+  ASSERT_EQ(crc32("123456789"), 0xCBF43926U);  // the check value of this CRC
+}
+
+TEST_F(MapFile, RoundTripKeepsEverything) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = Eigen::Vector3d(-200.0, 130.0, 64.0);
+  for (const bool labelled : {true, false}) {
+    WeightedMapBuilder builder(0.7);
+    for (unsigned seed = 0; seed < 3; ++seed) {
+      const pcl::PointCloud<pcl::PointXYZL> cloud = mixedCloud(seed, 4000, 90.0F);
+      labelled ? builder.addCloud(cloud, T) : builder.addCloud(withoutLabels(cloud), T);
+    }
+    const WeightedVoxelMap map = builder.build();
+    map.save(path());
+    EXPECT_EQ(std::filesystem::file_size(path()) % 4, 0U);
+    VoxelWeighting weighting;
+    weighting.planar_alpha = 2.0;
+    const WeightedVoxelMap loaded = WeightedVoxelMap::load(path(), weighting);
+    EXPECT_EQ(loaded.resolution(), 0.7);
+    EXPECT_EQ(loaded.labelled(), labelled);
+    EXPECT_EQ(loaded.origin().scan_count, 3U);
+    EXPECT_EQ(loaded.origin().point_count, 12000U);
+    EXPECT_EQ(loaded.weighting().planar_alpha, 2.0);
+    EXPECT_EQ(loaded.fine().size(), map.fine().size());
+    EXPECT_EQ(loaded.coarse().size(), map.coarse().size());
+    ASSERT_EQ(loaded.entries().size(), map.entries().size());
+    for (std::size_t i = 0; i < map.entries().size(); ++i) {
+      ASSERT_EQ(loaded.entries()[i].voxel, map.entries()[i].voxel);
+      ASSERT_EQ(loaded.entries()[i].label, map.entries()[i].label);
+      ASSERT_EQ(loaded.entries()[i].sums, map.entries()[i].sums);
+    }
+    EXPECT_TRUE(bytesOf(loaded) == contentOf(path()));
+  }
+}
+
+TEST_F(MapFile, AnEmptyMapIsAMap) {
+  WeightedMapBuilder(2.0).build().save(path());
+  EXPECT_EQ(std::filesystem::file_size(path()), kHeaderBytes);
+  const WeightedVoxelMap map = WeightedVoxelMap::load(path());
+  EXPECT_TRUE(map.empty());
+  EXPECT_EQ(map.resolution(), 2.0);
+}
+
+TEST_F(MapFile, RefusesEveryTruncation) {
+  const std::string whole = bytesOf(mapOf(mixedCloud(1, 60)));
+  for (std::size_t size = 0; size < whole.size(); size += size < 200 ? 1 : 37) {
+    expectRefused(whole.substr(0, size), {"offset "});
+  }
+  expectRefused(whole + "x", {"offset ", "truncated or damaged"});
+  expectRefused(whole + whole, {"offset "});
+}
+
+TEST_F(MapFile, RefusesEveryDamagedByte) {
+  const std::string whole = bytesOf(tinyMap());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const char flip : {'\x01', '\x80', '\xFF'}) {
+      std::string damaged = whole;
+      damaged[i] = static_cast<char>(damaged[i] ^ flip);
+      SCOPED_TRACE("byte " + std::to_string(i));
+      expectRefused(damaged, {"offset "});
+    }
+  }
+}
+
+TEST_F(MapFile, RefusesForeignFiles) {
+  expectRefused("", {"offset 0", "too short"});
+  expectRefused("SAWNDTM", {"offset 0", "too short"});
+  expectRefused(std::string(1000, '\0'), {"offset 0", "not a saw_ndt map"});
+  expectRefused("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\n", {"offset 0", "not a saw_ndt map"});
+  std::string newer = bytesOf(tinyMap());
+  put(newer, 8, std::uint32_t{2});
+  checksum(newer);
+  expectRefused(newer, {"offset 8", "map version 2, this program reads version 1"});
+  expectThrows<Error>([&] { WeightedVoxelMap::load(path("none.map")); }, {path("none.map"), "No such file"});
+  expectThrows<Error>([&] { WeightedVoxelMap::load(folder.path().string()); }, {folder.path().string(), "folder"});
+}
+
+TEST_F(MapFile, RefusesAbsurdSizesBeforeAllocating) {
+  const std::string whole = bytesOf(tinyMap());
+  constexpr auto kHuge = std::numeric_limits<std::uint64_t>::max();
+  const struct {
+    std::size_t offset;  // of a u64
+    std::uint64_t value;
+    std::string reason;
+  } cases[] = {
+      {48, kHuge, "do not make this size"},  // entries
+      {48, 1ULL << 40, "do not make this size"},
+      {48, 3, "do not make this size"},
+      {56, kHuge, "do not make this size"},                   // tiles
+      {56, kHuge / kTileBytes + 1, "do not make this size"},  // wraps around when multiplied
+      {56, 0, "do not make this size"},
+      {112, kHuge, "does not follow"},  // entries of the tile
+      {112, kHuge / kEntryBytes + 1, "does not follow"},
+      {112, 1, "disagree"},
+      {120, kHuge, "does not follow"},  // its offset
+      {120, 0, "does not follow"},
+      {140, 0, "out of range"},  // points of an entry
+      {140, 3, "out of range"},  // more than the map has
+      {140, 2, "the number of points"},
+      {148, 32769, "out of range"},  // sum of a point more than half a voxel out
+      {148, 1ULL << 63, "out of range"},
+      {172, (1ULL << 30) + 1, "out of range"},  // its product
+      {172, kHuge >> 1, "out of range"},
+      {140, kHuge, "out of range"},
+  };
+  for (const auto& c : cases) {
+    std::string damaged = whole;
+    put(damaged, c.offset, c.value);
+    if (c.reason == "disagree")
+      put(damaged, kHeaderBytes + 12, crc32(damaged.substr(136, kEntryBytes)));
+    else
+      checksum(damaged);
+    put(damaged, 64, crc32(damaged.substr(kHeaderBytes, kTileBytes)));
+    put(damaged, 92, crc32(damaged.substr(0, 92)));
+    SCOPED_TRACE(std::to_string(c.offset) + " = " + std::to_string(c.value));
+    expectRefused(damaged, {"offset ", c.reason});
+  }
+}
+
+TEST_F(MapFile, RefusesAnotherLayout) {
+  const std::string whole = bytesOf(tinyMap());
+  const auto expectRefusedWith = [&](std::size_t offset, auto value, const std::string& reason) {
+    std::string damaged = whole;
+    put(damaged, offset, value);
+    checksum(damaged);
+    SCOPED_TRACE(offset);
+    expectRefused(damaged, {"offset ", reason});
+  };
+  expectRefusedWith(12, std::uint32_t{128}, "unknown layout");  // header bytes
+  expectRefusedWith(24, std::uint32_t{32}, "unknown layout");   // tile size
+  expectRefusedWith(28, std::uint32_t{3}, "unknown layout");    // flags
+  expectRefusedWith(16, 0.0, "resolution");
+  expectRefusedWith(16, -1.0, "resolution");
+  expectRefusedWith(16, std::nan(""), "resolution");
+  expectRefusedWith(16, std::numeric_limits<double>::infinity(), "resolution");
+  expectRefusedWith(96, std::int32_t{1 << 25}, "outside");  // tile coordinates
+  expectRefusedWith(104, std::numeric_limits<std::int32_t>::min(), "outside");
+  expectRefusedWith(136, std::uint8_t{64}, "out of range");  // place in the tile
+  expectRefusedWith(139, std::uint8_t{3}, "out of range");   // label
+  expectRefusedWith(139, std::uint8_t{2}, "out of order");   // the same as the next one
+}
+
+TEST_F(MapFile, LeavesNothingBehindWhereItCannotWrite) {
+  const WeightedVoxelMap map = tinyMap();
+  expectThrows<Error>([&] { map.save(path("none/a.map")); }, {path("none/a.map"), "No such file"});
+  expectThrows<Error>([&] { map.save(folder.path().string()); }, {folder.path().string()});
+  EXPECT_EQ(folder.entryCount(), 0U);
+  folder.write("a.map", "older");
+  map.save(path());
+  EXPECT_EQ(folder.entryCount(), 1U);
+  EXPECT_GT(std::filesystem::file_size(path()), 5U);
+  if (std::filesystem::exists("/dev/full")) {
+    expectThrows<Error>([&] { map.save("/dev/full"); }, {"/dev/full"});
+  }
+}
+
+TEST_F(MapFile, EntriesAreOrderedByTileThenVoxelThenLabel) {
+  const auto entry = [](int x, int y, int z, StructuralLabel label) { return LabelledVoxelSums{{x, y, z}, label, {}}; };
+  const std::vector<LabelledVoxelSums> ordered{
+      entry(-1, 0, 0, StructuralLabel::Ground), entry(63, 0, 0, StructuralLabel::Noise),
+      entry(63, 0, 0, StructuralLabel::Ground), entry(0, 1, 0, StructuralLabel::Noise),
+      entry(0, 0, 1, StructuralLabel::Noise),   entry(64, 0, 0, StructuralLabel::Noise),
+      entry(0, 64, 0, StructuralLabel::Noise),  entry(-65, -65, 64, StructuralLabel::Noise),
+  };
+  for (std::size_t i = 0; i < ordered.size(); ++i) {
+    for (std::size_t j = 0; j < ordered.size(); ++j)
+      EXPECT_EQ(inMapOrder(ordered[i], ordered[j]), i < j) << i << ' ' << j;
+  }
+  EXPECT_EQ(tileOf({-1, -64, -65}), Eigen::Vector3i(-1, -1, -2));
+}
+
+}  // namespace
+}  // namespace saw_ndt

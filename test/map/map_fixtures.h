@@ -1,0 +1,69 @@
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "saw_ndt/map/weighted_map_builder.h"
+
+namespace saw_ndt {
+
+/// A cloud of walls, poles, bushes and ground within +-`extent_m` of the origin, each part with its own label, so that
+/// every structure class and every mixture of labels occurs. Metres.
+inline pcl::PointCloud<pcl::PointXYZL> mixedCloud(unsigned seed, int points, float extent_m = 12.0F) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> anywhere(-extent_m, extent_m);
+  std::normal_distribution<float> noise(0.0F, 0.02F);
+  pcl::PointCloud<pcl::PointXYZL> cloud;
+  for (int i = 0; i < points; ++i) {
+    pcl::PointXYZL point;
+    const float a = anywhere(random), b = anywhere(random);
+    switch (i % 4) {
+      case 0:
+        point.getVector3fMap() << a, b, -1.6F + noise(random);
+        point.label = 1;
+        break;
+      case 1:
+        point.getVector3fMap() << a, 4.3F + noise(random), 0.2F * b;
+        point.label = 2;
+        break;
+      case 2:
+        point.getVector3fMap() << 2.4F + noise(random), -3.3F + noise(random), 0.2F * a;
+        point.label = 2;
+        break;
+      default:
+        point.getVector3fMap() << -6.5F + 0.1F * a, -6.5F + 0.1F * b, 0.1F * anywhere(random);
+        point.label = i % 3 == 0 ? 0 : 2;
+    }
+    cloud.push_back(point);
+  }
+  return cloud;
+}
+
+inline pcl::PointCloud<pcl::PointXYZ> withoutLabels(const pcl::PointCloud<pcl::PointXYZL>& labelled) {
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  for (const pcl::PointXYZL& point : labelled) cloud.push_back({point.x, point.y, point.z});
+  return cloud;
+}
+
+template <typename PointT>
+WeightedVoxelMap mapOf(const pcl::PointCloud<PointT>& cloud, double resolution_m = 1.0,
+                       const VoxelWeighting& weighting = {}) {
+  WeightedMapBuilder builder(resolution_m);
+  builder.addCloud(cloud, Eigen::Isometry3d::Identity());
+  return builder.build(weighting);
+}
+
+inline std::string contentOf(const std::filesystem::path& path) {
+  std::ostringstream content;
+  content << std::ifstream(path, std::ios::binary).rdbuf();
+  return content.str();
+}
+
+}  // namespace saw_ndt
