@@ -11,7 +11,8 @@ namespace {
 constexpr char kDescription[] =
     "Builds an NDT map from the scans of a drive and their reference poses. Scans are segmented and the map keeps the "
     "sums of ground, non-ground and noise points of every voxel apart, so that one map serves every method of "
-    "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. The same scans "
+    "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. The same "
+    "scans "
     "give the same bytes, in any order and with any number of threads.";
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace {
 constexpr char kDescription[] =
     "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
     "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
-    "is printed too. A scan that is rejected keeps the pose that was predicted for it. Scans are segmented with the same "
+    "is printed too. A scan that is rejected keeps the pose that was predicted for it. Scans are segmented with the "
+    "same "
     "options as those of the map. Where reference poses exist, the first one is the initial pose and the others tell "
     "the errors.";
 
@@ -70,11 +71,11 @@ int main(int argc, char** argv) {
     saw_ndt::VoxelWeighting weighting;
     weighting.confidence = options.method.confidence;
     saw_ndt::Localizer localizer(
-        std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(map_file, weighting)), options);
-    localizer.setInitialPose(app.isGiven("initial-pose")
-                                 ? saw_ndt::transformOf(initial_pose)
-                                 : reference_lidar[static_cast<std::size_t>(selected.front())] *
-                                       options.T_base_lidar.inverse());
+        std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(map_file, weighting)),
+        options);
+    localizer.setInitialPose(app.isGiven("initial-pose") ? saw_ndt::transformOf(initial_pose)
+                                                         : reference_lidar[static_cast<std::size_t>(selected.front())] *
+                                                               options.T_base_lidar.inverse());
 
     saw_ndt::OutputFolder folder(out_dir);
     saw_ndt::ProgressBar progress(selected.size());

@@ -126,12 +126,13 @@ void print(const std::string& name, const Figures& f) {
 int main(int argc, char** argv) {
   std::string sequence_folder, map_scans = "0:70:2", scans = "1:70:10";
   bool without_pcl = false;
-  saw_ndt::AppOptions app("perturbation_benchmark",
-                          "Aligns scans of a drive from ten perturbed starts each (0.5 m off in all directions, 0.1 m up "
-                          "or down, 1 degree of yaw) with pcl::NormalDistributionsTransform (epsilon 1e-4, one thread) "
-                          "and with this project's methods, and prints a table. Success: within 0.1 m and 0.2 degrees "
-                          "of the reference pose. Spread: distance of the ten final positions of a scan from their "
-                          "mean. Evaluations: mean / most, of score, gradient and Hessian on either level.");
+  saw_ndt::AppOptions app(
+      "perturbation_benchmark",
+      "Aligns scans of a drive from ten perturbed starts each (0.5 m off in all directions, 0.1 m up "
+      "or down, 1 degree of yaw) with pcl::NormalDistributionsTransform (epsilon 1e-4, one thread) "
+      "and with this project's methods, and prints a table. Success: within 0.1 m and 0.2 degrees "
+      "of the reference pose. Spread: distance of the ten final positions of a scan from their "
+      "mean. Evaluations: mean / most, of score, gradient and Hessian on either level.");
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout");
   app.addOption("map-scans", &map_scans, "SLICE", "scans of the map");
   app.addOption("scans", &scans, "SLICE", "scans to align");
@@ -152,8 +153,8 @@ int main(int argc, char** argv) {
       auto target = pcl::make_shared<Cloud>();
       for (const int scan : mapped) {
         for (pcl::PointXYZI point : sequence.readScan(scan)) {
-          point.getVector3fMap() = (reference[static_cast<std::size_t>(scan)] *
-                                    point.getVector3fMap().cast<double>()).cast<float>();
+          point.getVector3fMap() =
+              (reference[static_cast<std::size_t>(scan)] * point.getVector3fMap().cast<double>()).cast<float>();
           target->push_back(point);
         }
       }

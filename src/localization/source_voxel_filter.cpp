@@ -66,8 +66,8 @@ void SourceVoxelFilter::add(const Eigen::Vector3f& point, StructuralLabel label)
 
 const SourcePoints& SourceVoxelFilter::finish() {
   for (const Cell& cell : cells_) {
-    const Eigen::Vector3f centroid = cell.voxel.cast<float>() * static_cast<float>(voxel_size_m_) +
-                                     cell.offset_sum / static_cast<float>(cell.count);
+    const Eigen::Vector3f centroid =
+        cell.voxel.cast<float>() * static_cast<float>(voxel_size_m_) + cell.offset_sum / static_cast<float>(cell.count);
     points_.add(centroid.x(), centroid.y(), centroid.z(), cell.label);
   }
   cells_.clear();

@@ -21,8 +21,8 @@ LabelledVoxelSums inParent(const LabelledVoxelSums& child, int factor) {
   std::array<std::int64_t, 3> shift;
   for (int axis = 0; axis < 3; ++axis) {
     parent.voxel[axis] = floorDivide(child.voxel[axis], factor);
-    const std::int64_t place = static_cast<std::int64_t>(child.voxel[axis]) -
-                               static_cast<std::int64_t>(parent.voxel[axis]) * factor;
+    const std::int64_t place =
+        static_cast<std::int64_t>(child.voxel[axis]) - static_cast<std::int64_t>(parent.voxel[axis]) * factor;
     shift[static_cast<std::size_t>(axis)] = (2 * place + 1 - factor) * (kStepsPerVoxel / 2);
   }
   parent.sums = child.sums.shifted(shift);
@@ -48,7 +48,8 @@ std::optional<VoxelStatistics> voxelOf(const LabelledVoxelSums* first, const Lab
     confidence_sum += confidence * static_cast<double>(entry->sums.count);
   }
   if (sums.count == 0) return std::nullopt;
-  return voxelStatistics(first->voxel, sums, confidence_sum / static_cast<double>(sums.count), weighting, metres_per_step);
+  return voxelStatistics(first->voxel, sums, confidence_sum / static_cast<double>(sums.count), weighting,
+                         metres_per_step);
 }
 
 }  // namespace
@@ -97,8 +98,7 @@ NdtLevel NdtLevel::fromSums(const std::vector<LabelledVoxelSums>& entries, doubl
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t i = 0; i < voxel_count; ++i) {
     const auto v = static_cast<std::size_t>(i);
-    candidates[v] =
-        voxelOf(grouped.data() + firsts[v], grouped.data() + firsts[v + 1], weighting, metres_per_step);
+    candidates[v] = voxelOf(grouped.data() + firsts[v], grouped.data() + firsts[v + 1], weighting, metres_per_step);
   }
   std::vector<VoxelStatistics> voxels;
   for (const auto& candidate : candidates) {

@@ -9,9 +9,7 @@ namespace {
 struct BrickRange {
   int first, last;
 };
-BrickRange bricksThatHold(int local) {
-  return {local == 0 ? -1 : 0, local == VoxelIndex::kBrickSize - 1 ? 1 : 0};
-}
+BrickRange bricksThatHold(int local) { return {local == 0 ? -1 : 0, local == VoxelIndex::kBrickSize - 1 ? 1 : 0}; }
 
 }  // namespace
 

@@ -30,8 +30,7 @@ MeanAndCovariance meanAndCovariance(const VoxelSums& sums, double metres_per_ste
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j, ++k) {
       const double scatter = static_cast<double>(centred.product[k]) - count * residual[i] * residual[j];
-      result.covariance(i, j) = result.covariance(j, i) =
-          scatter / (count - 1.0) * (metres_per_step * metres_per_step);
+      result.covariance(i, j) = result.covariance(j, i) = scatter / (count - 1.0) * (metres_per_step * metres_per_step);
     }
   }
   return result;

@@ -55,8 +55,8 @@ Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& sourc
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
   for (std::ptrdiff_t b = 0; b < block_count; ++b) {
     const std::size_t first = static_cast<std::size_t>(b) * kPointsPerBlock;
-    blocks[static_cast<std::size_t>(b)] = sumBlock(level, source, T_map_source, parameters, first,
-                                                   std::min(first + kPointsPerBlock, source.size()));
+    blocks[static_cast<std::size_t>(b)] =
+        sumBlock(level, source, T_map_source, parameters, first, std::min(first + kPointsPerBlock, source.size()));
   }
   Sums total;
   for (const Sums& sums : blocks) {

@@ -34,8 +34,9 @@ double secantMinimizer(const Trial& from, const Trial& to) {
   return from.step - (from.step - to.step) / (from.at.slope - to.at.slope) * from.at.slope;
 }
 
-// The next trial by the four cases of Section 4 of the paper.
-double nextStep(const Trial& lower, const Trial& upper, const Trial& trial) {
+// The next trial by the four cases of Section 4 of the paper. `bracketed`: a minimizer is known to lie between lower
+// and upper; otherwise there is no upper yet, and where the function only falls faster the longest step is tried.
+double nextStep(const Trial& lower, const Trial& upper, const Trial& trial, bool bracketed, double max_step) {
   if (trial.step == lower.step) return trial.step;
   if (trial.at.value > lower.at.value) {
     const double cubic = cubicMinimizer(lower, trial);
@@ -51,10 +52,11 @@ double nextStep(const Trial& lower, const Trial& upper, const Trial& trial) {
     const double cubic = cubicMinimizer(lower, trial);
     const double secant = secantMinimizer(lower, trial);
     const double nearer = std::abs(cubic - trial.step) < std::abs(secant - trial.step) ? cubic : secant;
+    if (!bracketed) return nearer > trial.step ? nearer : max_step;
     const double bound = trial.step + 0.66 * (upper.step - trial.step);
     return trial.step > lower.step ? std::min(bound, nearer) : std::max(bound, nearer);
   }
-  return upper.step == trial.step ? trial.step : cubicMinimizer(upper, trial);
+  return bracketed ? cubicMinimizer(upper, trial) : max_step;
 }
 
 // Shrinks the interval of uncertainty; true when it has become a point.
@@ -88,17 +90,18 @@ double moreThuenteStep(const std::function<ValueAndSlope(double)>& function, con
   Trial lower{0.0, psi(0.0, at_zero)}, upper = lower;
   double step = clamped(first_step);
   ValueAndSlope at = function(step);
-  bool closed = false;
+  bool closed = false, bracketed = false;
   for (int trials = 0; trials < max_trials && min_step < max_step; ++trials) {
     const ValueAndSlope reduced = psi(step, at);
-    if (reduced.value <= 0.0 && std::abs(at.slope) <= -kFlattening * at_zero.slope) break;
+    if (reduced.value <= 0.0 && at.slope <= -kFlattening * at_zero.slope) break;
     if (!closed && reduced.value <= 0.0 && reduced.slope >= 0.0) {
       closed = true;
       back(lower);
       back(upper);
     }
     const Trial trial{step, closed ? at : reduced};
-    const double next = clamped(nextStep(lower, upper, trial));
+    const double next = clamped(nextStep(lower, upper, trial, bracketed, max_step));
+    bracketed = bracketed || trial.at.value > lower.at.value || trial.at.slope * lower.at.slope < 0.0;
     if (updateInterval(lower, upper, trial) || !std::isfinite(next) || next == step) break;
     step = next;
     at = function(step);

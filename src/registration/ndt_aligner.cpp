@@ -52,9 +52,7 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
   }
 
   const NdtObjective fine = objectiveOn(map.fine(), map, source, options);
-  const Evaluation evaluate = [&](const Eigen::Isometry3d& T) {
-    return fine.evaluate(source, T, threads, workspace_);
-  };
+  const Evaluation evaluate = [&](const Eigen::Isometry3d& T) { return fine.evaluate(source, T, threads, workspace_); };
   if (options.optimizer == Optimizer::DAMPED_NEWTON) {
     dampedNewton(evaluate, limits, options.least_curvature_share, result);
   } else {
@@ -67,7 +65,8 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
 NdtDerivatives NdtAligner::evaluate(const WeightedVoxelMap& map, const SourcePoints& source,
                                     const Eigen::Isometry3d& T_map_source, const AlignmentOptions& options) {
   options.check();
-  return objectiveOn(map.fine(), map, source, options).evaluate(source, T_map_source, threadCount(options.threads), workspace_);
+  return objectiveOn(map.fine(), map, source, options)
+      .evaluate(source, T_map_source, threadCount(options.threads), workspace_);
 }
 
 }  // namespace saw_ndt

@@ -45,8 +45,7 @@ void newtonMoreThuente(const Evaluation& evaluate, const StepLimits& limits, dou
       at = evaluateAt(pose + step * direction);
       return ValueAndSlope{-at.score, -at.gradient.dot(direction)};
     };
-    const double step =
-        moreThuenteStep(along, {-at.score, slope}, length, line_search_min_step, line_search_max_step);
+    const double step = moreThuenteStep(along, {-at.score, slope}, length, line_search_min_step, line_search_max_step);
     pose += step * direction;
     if (step * direction.head<3>().norm() <= limits.translation_epsilon_m &&
         step * direction.tail<3>().norm() <= limits.rotation_epsilon_rad) {

@@ -130,15 +130,12 @@ TEST_P(NdtObjectiveDerivatives, InEulerAnglesAgreeWithCentralDifferences) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryModeWithAndWithoutWeights, NdtObjectiveDerivatives,
-                         testing::Values(Case{NeighborhoodSearchMethod::DIRECT1, false},
-                                         Case{NeighborhoodSearchMethod::DIRECT1, true},
-                                         Case{NeighborhoodSearchMethod::DIRECT7, false},
-                                         Case{NeighborhoodSearchMethod::DIRECT7, true},
-                                         Case{NeighborhoodSearchMethod::DIRECT26, false},
-                                         Case{NeighborhoodSearchMethod::DIRECT26, true},
-                                         Case{NeighborhoodSearchMethod::RADIUS, false},
-                                         Case{NeighborhoodSearchMethod::RADIUS, true}));
+INSTANTIATE_TEST_SUITE_P(
+    EveryModeWithAndWithoutWeights, NdtObjectiveDerivatives,
+    testing::Values(Case{NeighborhoodSearchMethod::DIRECT1, false}, Case{NeighborhoodSearchMethod::DIRECT1, true},
+                    Case{NeighborhoodSearchMethod::DIRECT7, false}, Case{NeighborhoodSearchMethod::DIRECT7, true},
+                    Case{NeighborhoodSearchMethod::DIRECT26, false}, Case{NeighborhoodSearchMethod::DIRECT26, true},
+                    Case{NeighborhoodSearchMethod::RADIUS, false}, Case{NeighborhoodSearchMethod::RADIUS, true}));
 
 TEST(NdtObjective, EveryModeMeetsThePairsThatABruteForceSearchMeets) {
   const WeightedVoxelMap map = mapOf(streetCorner(1));
@@ -241,8 +238,8 @@ TEST(NdtObjective, FarFromTheOriginNothingIsLost) {
   const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0);
   const NdtDerivatives near_result =
       NdtObjective(near_map.fine(), NeighborhoodSearchMethod::DIRECT7, score, {}).evaluate(source, T, 1, workspace);
-  const NdtDerivatives far_result =
-      NdtObjective(far_map.fine(), NeighborhoodSearchMethod::DIRECT7, score, {}).evaluate(source, shift * T, 1, workspace);
+  const NdtDerivatives far_result = NdtObjective(far_map.fine(), NeighborhoodSearchMethod::DIRECT7, score, {})
+                                        .evaluate(source, shift * T, 1, workspace);
   // Doubles at 5e6 m resolve 1e-9 m, against standard deviations of 1e-2 m.
   EXPECT_NEAR(far_result.score, near_result.score, 1e-6 * near_result.score);
   EXPECT_LT((far_result.gradient() - near_result.gradient()).norm(), 1e-5 * near_result.gradient().norm());

@@ -48,8 +48,8 @@ LocalizationSummary summarize(const SequenceLocalization& run, const LocalizerOp
 /// The summary as one JSON object with a line break at its end.
 std::string toJsonText(const LocalizationSummary& summary);
 
-/// Writes trajectory_tum.txt (poses of the base), trajectory_kitti.txt (of the left camera), frames.csv and summary.json
-/// into a folder that exists. @throws Error
+/// Writes trajectory_tum.txt (poses of the base), trajectory_kitti.txt (of the left camera), frames.csv and
+/// summary.json into a folder that exists. @throws Error
 void writeLocalization(const std::filesystem::path& folder, const SequenceLocalization& run,
                        const LocalizationSummary& summary, const Eigen::Isometry3d& T_base_lidar,
                        const Eigen::Isometry3d& T_camera_lidar);

@@ -17,9 +17,9 @@ namespace saw_ndt {
 
 /// When a result is published and stored (Section III.C of the paper).
 struct AcceptanceOptions {
-  double min_likelihood = 0.5;        ///< least Likelihoods::unweighted, which weights do not change
-  double max_correction_m = 3.0;      ///< greatest distance of the result from the prediction (m)
-  double max_correction_deg = 10.0;   ///< greatest turn from the prediction (degrees)
+  double min_likelihood = 0.5;       ///< least Likelihoods::unweighted, which weights do not change
+  double max_correction_m = 3.0;     ///< greatest distance of the result from the prediction (m)
+  double max_correction_deg = 10.0;  ///< greatest turn from the prediction (degrees)
   /// Before a velocity is known the vehicle may have moved this fast since the last pose (m/s).
   double max_unknown_speed_mps = 40.0;
 
@@ -30,7 +30,7 @@ struct AcceptanceOptions {
 struct LocalizerOptions {
   LocalizationMethod method = LocalizationMethod::named("weighted");
   SegmentationOptions segmentation;
-  double source_voxel_size_m = 0.2;  ///< see SourceVoxelFilter
+  double source_voxel_size_m = 0.2;                                ///< see SourceVoxelFilter
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< mounting of the LiDAR on the vehicle
   MotionPredictionOptions prediction;
   AlignmentOptions alignment;  ///< use_weights, mismatch_penalty and outlier_ratio are the method's
@@ -64,15 +64,16 @@ struct LocalizationResult {
   /// Inverse of the curvature of the score by (translation, rotation), see NdtDerivatives: which directions are well
   /// held and which are not. Relative, not calibrated; zero where the scan was rejected or the curvature is singular.
   Matrix6d covariance = Matrix6d::Zero();
-  double correction_m = 0.0;     ///< distance of the registration's result from the prediction
-  double correction_rad = 0.0;   ///< turn of the registration's result from the prediction
+  double correction_m = 0.0;    ///< distance of the registration's result from the prediction
+  double correction_rad = 0.0;  ///< turn of the registration's result from the prediction
   std::size_t source_points = 0;
   StageTimes times;
 
   bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
 };
 
-/// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. Scratch memory is kept from scan to scan.
+/// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. Scratch memory is kept from scan to
+/// scan.
 class Localizer {
  public:
   /// @param map  read with the confidences of options.method (see WeightedVoxelMap::load and reweighted)

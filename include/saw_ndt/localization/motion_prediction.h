@@ -6,15 +6,15 @@
 namespace saw_ndt {
 
 struct MotionPredictionOptions {
-  double max_speed_mps = 60.0;         ///< a predicted speed is cut to this (m/s)
-  double max_turn_rate_radps = 1.5;    ///< a predicted turn rate is cut to this (rad/s)
+  double max_speed_mps = 60.0;       ///< a predicted speed is cut to this (m/s)
+  double max_turn_rate_radps = 1.5;  ///< a predicted turn rate is cut to this (rad/s)
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
 };
 
-/// Predicts the next pose from the last two accepted ones and their stamps: constant velocity, bounded (Section III.C of
-/// the paper). Before there are two, the last pose.
+/// Predicts the next pose from the last two accepted ones and their stamps: constant velocity, bounded (Section III.C
+/// of the paper). Before there are two, the last pose.
 class MotionPrediction {
  public:
   explicit MotionPrediction(const MotionPredictionOptions& options = {});
@@ -36,7 +36,7 @@ class MotionPrediction {
   Eigen::Isometry3d T_map_last_ = Eigen::Isometry3d::Identity();
   std::optional<double> last_stamp_s_;
   bool velocity_known_ = false;
-  Eigen::Vector3d velocity_base_mps_ = Eigen::Vector3d::Zero();       // of the step from one accepted pose to the next
+  Eigen::Vector3d velocity_base_mps_ = Eigen::Vector3d::Zero();  // of the step from one accepted pose to the next
   Eigen::Vector3d turn_rate_base_radps_ = Eigen::Vector3d::Zero();
 };
 

@@ -14,7 +14,8 @@ namespace saw_ndt {
 //              24 bytes zero, u32 CRC-32 of the header before it
 //   directory  40 bytes a tile, ordered by z, y, x: i32 x y z, u32 CRC-32 of the tile's entries, u64 entries,
 //              u64 offset in the file, u64 zero
-//   entries    84 bytes each, tile after tile, ordered by z, y, x, label: u8 x y z within the tile, u8 label, u64 count,
+//   entries    84 bytes each, tile after tile, ordered by z, y, x, label: u8 x y z within the tile, u8 label, u64
+//   count,
 //              i64 sum x y z, i64 product xx xy xz yy yz zz (VoxelSums)
 //
 // Means, covariances, confidences and weights follow exactly from the sums and are not repeated. With the directory in

@@ -11,9 +11,9 @@
 namespace saw_ndt {
 
 struct SequenceMapOptions {
-  double resolution_m = 1.0;                      ///< edge of a voxel
+  double resolution_m = 1.0;                                                ///< edge of a voxel
   std::optional<SegmentationOptions> segmentation = SegmentationOptions();  ///< none: raw points without labels
-  int threads = 0;                                ///< 0: all cores; the map does not depend on it
+  int threads = 0;  ///< 0: all cores; the map does not depend on it
 };
 
 /// Adds the given scans of a drive, segmented and moved by their reference poses, to a new builder.

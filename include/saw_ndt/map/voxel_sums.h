@@ -30,8 +30,7 @@ inline bool quantize(const Eigen::Vector3d& position_m, double inverse_resolutio
     if (!(std::abs(scaled) < kLimit)) return false;
     const double whole = std::floor(scaled);
     quantized.voxel[axis] = static_cast<int>(whole);
-    quantized.steps[axis] =
-        static_cast<std::int32_t>((scaled - whole) * kStepsPerVoxel + 0.5) - kStepsPerVoxel / 2;
+    quantized.steps[axis] = static_cast<std::int32_t>((scaled - whole) * kStepsPerVoxel + 0.5) - kStepsPerVoxel / 2;
   }
   return true;
 }

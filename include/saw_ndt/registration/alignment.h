@@ -27,7 +27,8 @@ struct AlignmentOptions {
   double rotation_epsilon_rad = 5e-5;   ///< ... and turns less than this (rad)
   double max_step_m = 0.5;              ///< longest step of DAMPED_NEWTON (m), at 1 m voxels; grows with the voxels
   /// Least share of the Gauss-Newton curvature that a Newton step of DAMPED_NEWTON reckons with, in (0, 1]; 1 is
-  /// iteratively reweighted least squares, towards 0 is Newton's method, which leaves the basin where it is not concave.
+  /// iteratively reweighted least squares, towards 0 is Newton's method, which leaves the basin where it is not
+  /// concave.
   double least_curvature_share = 0.5;
 
   bool use_coarse_level = true;         ///< DAMPED_NEWTON: start on the coarse level where the map has one
@@ -35,8 +36,8 @@ struct AlignmentOptions {
   int coarse_stride = 4;                ///< every how many-th source point the coarse level uses, 1 or more
   double coarse_settled_voxels = 0.02;  ///< the coarse level is left when a step is shorter, in fine voxels
 
-  double line_search_max_step = 0.1;    ///< NEWTON_MORE_THUENTE: longest step, metres and radians in one norm
-  double line_search_min_step = 5e-4;   ///< NEWTON_MORE_THUENTE: shortest step of the line search
+  double line_search_max_step = 0.1;   ///< NEWTON_MORE_THUENTE: longest step, metres and radians in one norm
+  double line_search_min_step = 5e-4;  ///< NEWTON_MORE_THUENTE: shortest step of the line search
 
   int threads = 0;  ///< 0: all cores
 

@@ -9,7 +9,7 @@ namespace saw_ndt {
 
 /// How well a pose explains a source, in figures that weights do not change. Each is of Magnusson's score function.
 struct Likelihoods {
-  double unweighted = 0.0;     ///< sum over all pairs / number of source points: PCL's, with every weight 1
+  double unweighted = 0.0;  ///< sum over all pairs / number of source points: PCL's, with every weight 1
   /// The same over the points not labelled ground. The ground keeps the others high where a pose is lost along a road.
   double non_ground = 0.0;
   double nearest_voxel = 0.0;  ///< mean over the points that meet a voxel of the score of their best voxel

@@ -9,15 +9,15 @@ namespace saw_ndt {
 
 /// Score of a pose and what its first and second derivatives in any parameterization of the pose follow from.
 ///
-/// With the pose x -> R p + t, r = R p, the perturbation is (v, w): x -> exp(w) r + t + v, translation first. Lengths in
-/// metres, angles in radians.
+/// With the pose x -> R p + t, r = R p, the perturbation is (v, w): x -> exp(w) r + t + v, translation first. Lengths
+/// in metres, angles in radians.
 struct NdtDerivatives {
   double score = 0.0;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();    ///< sum of g, the derivative of the score by the moved point
-  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();   ///< sum of g r^T
-  Matrix6d curvature = Matrix6d::Zero();              ///< sum of J^T (W d2 e C^-1) J: positive semidefinite
-  Matrix6d radial_curvature = Matrix6d::Zero();       ///< sum of J^T (W d2^2 e C^-1 q q^T C^-1) J: likewise
-  std::size_t pair_count = 0;                         ///< source-voxel pairs that were met
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< sum of g, the derivative of the score by the moved point
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();  ///< sum of g r^T
+  Matrix6d curvature = Matrix6d::Zero();             ///< sum of J^T (W d2 e C^-1) J: positive semidefinite
+  Matrix6d radial_curvature = Matrix6d::Zero();      ///< sum of J^T (W d2^2 e C^-1 q q^T C^-1) J: likewise
+  std::size_t pair_count = 0;                        ///< source-voxel pairs that were met
 
   /// Gradient of the score by (v, w).
   Vector6d gradient() const;
@@ -25,8 +25,8 @@ struct NdtDerivatives {
   Matrix6d hessian() const;
 };
 
-/// Gradient and Hessian in PCL's parameters [x y z roll pitch yaw], R = Rx(roll) Ry(pitch) Rz(yaw) (eq. 6.12 and 6.13 of
-/// Magnusson 2009).
+/// Gradient and Hessian in PCL's parameters [x y z roll pitch yaw], R = Rx(roll) Ry(pitch) Rz(yaw) (eq. 6.12 and 6.13
+/// of Magnusson 2009).
 struct EulerDerivatives {
   double score = 0.0;
   Vector6d gradient = Vector6d::Zero();
