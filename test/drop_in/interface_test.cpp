@@ -18,7 +18,7 @@ class DropInInterface : public testing::Test {};
 
 using Both =
     testing::Types<pcl::NormalDistributionsTransform<Point, Point>, WeightedNormalDistributionsTransform<Point, Point>>;
-TYPED_TEST_SUITE(DropInInterface, Both);
+TYPED_TEST_SUITE(DropInInterface, Both, );  // the comma is for Clang, which else warns of the macro
 
 TYPED_TEST(DropInInterface, HasPclsTypes) {
   using Ndt = TypeParam;
