@@ -1,6 +1,8 @@
 # What every target of this project is built with: the language level, and warnings as errors on our own code alone.
 function(saw_ndt_set_up_target target)
   target_compile_features(${target} PUBLIC cxx_std_17)
+  # Without extensions the language level is on the command line, where clang-tidy, whose default is older, reads it too.
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
 endfunction()
 
