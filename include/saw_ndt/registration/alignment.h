@@ -37,7 +37,7 @@ struct AlignmentOptions {
   double coarse_settled_voxels = 0.02;  ///< the coarse level is left when a step is shorter, in fine voxels
 
   double line_search_max_step = 0.1;   ///< NEWTON_MORE_THUENTE: longest step, metres and radians in one norm
-  double line_search_min_step = 5e-4;  ///< NEWTON_MORE_THUENTE: shortest step of the line search
+  double line_search_min_step = 1e-6;  ///< NEWTON_MORE_THUENTE: shortest step; not above the epsilons
 
   int threads = 0;  ///< 0: all cores
 
