@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   saw_ndt::SegmentationArguments segmentation;
   std::string method = options.method.name;
   saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
-  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout");
+  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt, times.txt");
   app.addPositional("MAP", &map_file, "map file of saw_ndt_build_map");
   app.addPositional("OUT_DIR", &out_dir, "folder for the results, made where it is missing");
   app.addChoice("method", &method, saw_ndt::LocalizationMethod::names(),
