@@ -18,10 +18,11 @@ Eigen::Vector3d bounded(const Eigen::Vector3d& vector, double limit) {
 Eigen::Matrix3d meanRotation(const Eigen::Vector3d& rotation_vector) {
   const double angle = rotation_vector.norm();
   const Eigen::Matrix3d K = skewSymmetric(rotation_vector);
-  // Below this angle the series' next terms are less than rounding.
+  // Up to here the terms left out are less than 1e-13; beyond, the quotients below keep their digits.
   if (angle < 1e-4) return Eigen::Matrix3d::Identity() + 0.5 * K + K * K / 6.0;
   const double squared = angle * angle;
-  return Eigen::Matrix3d::Identity() + (1.0 - std::cos(angle)) / squared * K +
+  const double sine_of_half = std::sin(0.5 * angle);
+  return Eigen::Matrix3d::Identity() + 2.0 * sine_of_half * sine_of_half / squared * K +
          (angle - std::sin(angle)) / (squared * angle) * K * K;
 }
 
