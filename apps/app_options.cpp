@@ -305,7 +305,8 @@ std::string AppOptions::help() const {
                         [](const Option& option) { return option.name != "config" && option.name != "threads"; });
   for (const Option& option : ordered) {
     const std::string default_text = option.default_text.empty() ? "none" : option.default_text;
-    text += helpEntry(termOf(option), option.help + " (default: " + default_text + ")", width);
+    const bool stated = option.help.find("(default: ") != std::string::npos;  // in words, where it is no fixed value
+    text += helpEntry(termOf(option), option.help + (stated ? "" : " (default: " + default_text + ")"), width);
   }
   return text + helpEntry("-h, -help", "print this text", width);
 }

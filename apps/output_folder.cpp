@@ -10,20 +10,41 @@
 
 namespace saw_ndt {
 
+namespace {
+
+/// The first folder on the way to `path` that does not exist; empty where all do.
+std::filesystem::path firstMissing(const std::filesystem::path& path) {
+  std::filesystem::path so_far;
+  std::error_code ignored;
+  for (const std::filesystem::path& part : path) {
+    so_far /= part;
+    if (std::filesystem::symlink_status(so_far, ignored).type() == std::filesystem::file_type::not_found) return so_far;
+  }
+  return {};
+}
+
+}  // namespace
+
 OutputFolder::OutputFolder(const std::string& path) : path_(path) {
+  const std::filesystem::path missing = firstMissing(path_);
   std::error_code error;
-  made_ = std::filesystem::create_directories(path_, error);
-  if (error) throw Error(path, "", "the output folder cannot be made: " + error.message());
+  std::filesystem::create_directories(path_, error);
+  if (error) {
+    const std::string reason = error.message();
+    if (!missing.empty()) std::filesystem::remove_all(missing, error);
+    throw Error(path, "", "the output folder cannot be made: " + reason);
+  }
   if (!std::filesystem::is_directory(path_)) throw Error(path, "", "is not a folder");
+  topmost_made_ = missing;
   if (::access(path.c_str(), W_OK | X_OK) != 0) {
     throw Error(path, "", std::string("the output folder cannot be written: ") + std::strerror(errno));
   }
 }
 
 OutputFolder::~OutputFolder() {
-  if (!made_ || kept_) return;
+  if (topmost_made_.empty() || kept_) return;
   std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  std::filesystem::remove_all(topmost_made_, ignored);
 }
 
 }  // namespace saw_ndt

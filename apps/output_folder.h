@@ -5,8 +5,8 @@
 
 namespace saw_ndt {
 
-/// A folder for an app's results. It is made, and found writable, before the work begins; if the work then fails, a
-/// folder that was made here goes away again.
+/// A folder for an app's results. It is made, and found writable, before the work begins; if the work then fails, what
+/// was made here goes away again, folders above it included.
 class OutputFolder {
  public:
   /// @throws Error that names the folder and the reason
@@ -21,7 +21,7 @@ class OutputFolder {
 
  private:
   std::filesystem::path path_;
-  bool made_ = false;
+  std::filesystem::path topmost_made_;  // empty: nothing was made
   bool kept_ = false;
 };
 

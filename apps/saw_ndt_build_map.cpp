@@ -2,6 +2,7 @@
 
 #include "app_options.h"
 #include "progress_bar.h"
+#include "saw_ndt/io/atomic_output.h"
 #include "saw_ndt/io/scan_selection.h"
 #include "saw_ndt/map/sequence_map.h"
 #include "segmentation_options.h"
@@ -12,8 +13,7 @@ constexpr char kDescription[] =
     "Builds an NDT map from the scans of a drive and their reference poses. Scans are segmented and the map keeps the "
     "sums of ground, non-ground and noise points of every voxel apart, so that one map serves every method of "
     "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. The same "
-    "scans "
-    "give the same bytes, in any order and with any number of threads.";
+    "scans give the same bytes, in any order and with any number of threads.";
 
 }  // namespace
 
@@ -23,13 +23,13 @@ int main(int argc, char** argv) {
   saw_ndt::SequenceMapOptions options;
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::AppOptions app("saw_ndt_build_map", kDescription);
-  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout");
+  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt");
   app.addPositional("MAP", &map_file, "map file to write");
   app.addOption("resolution", &options.resolution_m, "METRES", "edge of a voxel");
-  app.addOption("scans", &scans, "SLICE", "scans to use, first:last:step as in Python");
+  app.addOption("scans", &scans, "SLICE", "scans to use, first:last:step as in Python: `0:70:2`, or all with `:`");
   app.addOption("poses", &poses_file, "FILE",
                 "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
-  app.addFlag("classical", &classical, "raw points, no labels");
+  app.addFlag("classical", &classical, "do not segment: raw points without labels");
   segmentation.addTo(app);
 
   return saw_ndt::runApp(argc, argv, app, [&] {
@@ -40,6 +40,9 @@ int main(int argc, char** argv) {
     options.segmentation = segmentation.options();
     if (classical) options.segmentation.reset();
     saw_ndt::checkedUsage([&] { return saw_ndt::WeightedMapBuilder(options.resolution_m); });
+
+    // Found out before the long work: whether the map can be written. This leaves nothing behind.
+    { const saw_ndt::AtomicOutput probe(map_file); }
 
     saw_ndt::ProgressBar progress(selected.size());
     const saw_ndt::WeightedVoxelMap map =

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <iostream>
 
 #include "app_options.h"
 #include "output_folder.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/evaluation/sequence_localization.h"
 #include "saw_ndt/io/scan_selection.h"
 #include "segmentation_options.h"
@@ -13,10 +15,32 @@ namespace {
 constexpr char kDescription[] =
     "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
     "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
-    "is printed too. A scan that is rejected keeps the pose that was predicted for it. Scans are segmented with the "
-    "same "
-    "options as those of the map. Where reference poses exist, the first one is the initial pose and the others tell "
-    "the errors.";
+    "is printed too. A scan that is rejected gets the pose that was predicted for it. Give -sensor, -ground-rule and "
+    "-mounting-pitch_deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
+    "pose, and all together they tell the errors.";
+
+/// Whether the errors have a scan left after the skipped start, by the stamps of the scans localized.
+bool anyScanAfterSkip(const std::vector<int>& scans, const std::vector<double>& stamps_s, double skip_s) {
+  double first_s = stamps_s[static_cast<std::size_t>(scans.front())], last_s = first_s;
+  for (const int scan : scans) {
+    first_s = std::min(first_s, stamps_s[static_cast<std::size_t>(scan)]);
+    last_s = std::max(last_s, stamps_s[static_cast<std::size_t>(scan)]);
+  }
+  return last_s - first_s >= skip_s;
+}
+
+std::shared_ptr<const saw_ndt::WeightedVoxelMap> loadMap(const std::string& file,
+                                                         const saw_ndt::LocalizationMethod& method) {
+  saw_ndt::VoxelWeighting weighting;
+  weighting.confidence = method.confidence;
+  auto map = std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(file, weighting));
+  if (method.segment && !map->labelled()) {
+    throw saw_ndt::Error(file, "",
+                         "was built with -classical: it has no labels, which the method " + method.name +
+                             " needs; use -method classical or build it without");
+  }
+  return map;
+}
 
 }  // namespace
 
@@ -28,27 +52,28 @@ int main(int argc, char** argv) {
   saw_ndt::SegmentationArguments segmentation;
   std::string method = options.method.name;
   saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
-  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout");
+  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt, times.txt");
   app.addPositional("MAP", &map_file, "map file of saw_ndt_build_map");
   app.addPositional("OUT_DIR", &out_dir, "folder for the results, made where it is missing");
   app.addChoice("method", &method, saw_ndt::LocalizationMethod::names(),
                 "weighted is this project's, the others are the paper's");
-  app.addOption("scans", &scans, "SLICE", "scans to localize, first:last:step as in Python");
-  app.addOption("skip", &skip_s, "SECONDS", "time at the start that the errors leave out");
+  app.addOption("scans", &scans, "SLICE", "scans to localize, first:last:step as in Python: `1:70:2`, or all with `:`");
+  app.addOption("skip", &skip_s, "SECONDS", "time at the start that the errors leave out; 0 for short drives");
   app.addOption("poses", &poses_file, "FILE",
                 "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
   app.addOption("initial-pose", &initial_pose, saw_ndt::kPosePlaceholder,
-                "pose of the base at the first scan, metres and degrees (default: its reference pose)");
+                "pose of the base in the map at the first scan, metres and degrees (default: its reference pose)");
   app.addOption("base-lidar", &base_lidar, saw_ndt::kPosePlaceholder,
-                "pose of the LiDAR on the base, metres and degrees");
-  app.addOption("source-voxel", &options.source_voxel_size_m, "METRES", "edge of a source voxel, 0 for none");
+                "pose of the LiDAR on the vehicle's base, metres and degrees; all zero: the base is the LiDAR");
+  app.addOption("source-voxel", &options.source_voxel_size_m, "METRES",
+                "edge of the voxels that thin a scan, 0 for none");
   app.addOption("max-iterations", &options.alignment.max_iterations, "N", "steps of an alignment at most");
   app.addOption("min-likelihood", &options.acceptance.min_likelihood, "X",
-                "a scan below this unweighted likelihood is rejected");
+                "a scan whose likelihood without weights (unweighted_likelihood in frames.csv) is less is rejected");
   app.addOption("max-correction", &options.acceptance.max_correction_m, "METRES",
-                "a scan corrected by more than this is rejected");
+                "a scan moved farther than this from its predicted pose is rejected");
   app.addOption("max-correction_deg", &options.acceptance.max_correction_deg, "DEGREES",
-                "a scan corrected by more than this is rejected");
+                "a scan turned farther than this from its predicted pose is rejected");
   segmentation.addTo(app);
 
   return saw_ndt::runApp(argc, argv, app, [&] {
@@ -65,17 +90,19 @@ int main(int argc, char** argv) {
     std::vector<Eigen::Isometry3d> reference_lidar;
     if (sequence.hasPoses()) reference_lidar = sequence.posesLidar();
     if (reference_lidar.empty() && !app.isGiven("initial-pose")) {
-      throw saw_ndt::UsageError("the drive has no reference poses: option -initial-pose is needed");
+      throw saw_ndt::UsageError(sequence_folder + ": no reference poses: option -initial-pose is needed");
     }
+    const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
-    saw_ndt::VoxelWeighting weighting;
-    weighting.confidence = options.method.confidence;
-    saw_ndt::Localizer localizer(
-        std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(map_file, weighting)),
-        options);
+    saw_ndt::Localizer localizer(loadMap(map_file, options.method), options);
     localizer.setInitialPose(app.isGiven("initial-pose") ? saw_ndt::transformOf(initial_pose)
                                                          : reference_lidar[static_cast<std::size_t>(selected.front())] *
                                                                options.T_base_lidar.inverse());
+
+    if (!reference_lidar.empty() && !anyScanAfterSkip(selected, stamps_s, skip_s)) {
+      std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
+      reference_lidar.clear();
+    }
 
     saw_ndt::OutputFolder folder(out_dir);
     saw_ndt::ProgressBar progress(selected.size());
@@ -83,7 +110,7 @@ int main(int argc, char** argv) {
         saw_ndt::localizeSequence(localizer, sequence, selected, [&] { progress.step(); });
     const saw_ndt::LocalizationSummary summary =
         saw_ndt::summarize(run, localizer.options(), reference_lidar, stamps_s, skip_s);
-    saw_ndt::writeLocalization(folder.path(), run, summary, options.T_base_lidar, sequence.T_camera_lidar());
+    saw_ndt::writeLocalization(folder.path(), run, summary, options.T_base_lidar, T_camera_lidar);
     folder.keep();
     std::cout << saw_ndt::toJsonText(summary);
   });

@@ -5,7 +5,7 @@ namespace saw_ndt {
 void SegmentationArguments::addTo(AppOptions& app) {
   app.addChoice("sensor", &sensor_, SensorModel::names(), "beams and image width of the LiDAR");
   app.addChoice("ground-rule", &ground_rule_, {"growing", "inclination"},
-                "how ground is told: grown outward column by column, or by the paper's inclination between neighbours");
+                "how ground is told: growing follows it outward column by column, inclination is the paper's rule");
   app.addOption("mounting-pitch_deg", &mounting_pitch_deg_, "DEGREES",
                 "angle by which the LiDAR's x axis points below the horizon");
 }

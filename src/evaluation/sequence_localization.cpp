@@ -1,10 +1,14 @@
 #include "saw_ndt/evaluation/sequence_localization.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <iomanip>
 #include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
 
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/common/threads.h"
 #include "saw_ndt/evaluation/json.h"
@@ -28,6 +32,44 @@ std::vector<double> collect(const SequenceLocalization& run, Field field) {
   for (const LocalizationResult& result : run.results) values.push_back(static_cast<double>(field(result)));
   return values;
 }
+
+/// Files that appear in a folder all together: they are written into a folder within it and moved by commit(). Without
+/// commit() those that were there stay as they were and nothing is left behind.
+class StagedFiles {
+ public:
+  /// @throws Error where one of the names is taken by a folder, or nothing can be written
+  StagedFiles(const std::filesystem::path& target, std::vector<std::string> names)
+      : target_(target), folder_(target / (".saw_ndt-" + std::to_string(getpid()))), names_(std::move(names)) {
+    std::error_code error;
+    for (const std::string& name : names_) {
+      if (std::filesystem::is_directory(target_ / name, error))
+        throw Error((target_ / name).string(), "", "is a folder");
+    }
+    std::filesystem::create_directory(folder_, error);
+    if (error) throw Error(target.string(), "", error.message());
+  }
+  ~StagedFiles() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  StagedFiles(const StagedFiles&) = delete;
+  StagedFiles& operator=(const StagedFiles&) = delete;
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+  /// @throws Error
+  void commit() const {
+    for (const std::string& name : names_) {
+      std::error_code error;
+      std::filesystem::rename(folder_ / name, target_ / name, error);
+      if (error) throw Error((target_ / name).string(), "", error.message());
+    }
+  }
+
+ private:
+  std::filesystem::path target_, folder_;
+  std::vector<std::string> names_;
+};
 
 void writeFrames(const std::filesystem::path& path, const SequenceLocalization& run) {
   AtomicOutput output(path);
@@ -128,12 +170,14 @@ void writeLocalization(const std::filesystem::path& folder, const SequenceLocali
     base_poses.push_back({result.stamp_s, result.T_map_base});
     camera_poses.push_back(cameraPose(result.T_map_base * T_base_lidar, T_camera_lidar));
   }
-  writeTumTrajectory(folder / "trajectory_tum.txt", base_poses);
-  writeKittiTrajectory(folder / "trajectory_kitti.txt", camera_poses);
-  writeFrames(folder / "frames.csv", run);
-  AtomicOutput output(folder / "summary.json");
+  const StagedFiles staged(folder, {"trajectory_tum.txt", "trajectory_kitti.txt", "frames.csv", "summary.json"});
+  writeTumTrajectory(staged.folder() / "trajectory_tum.txt", base_poses);
+  writeKittiTrajectory(staged.folder() / "trajectory_kitti.txt", camera_poses);
+  writeFrames(staged.folder() / "frames.csv", run);
+  AtomicOutput output(staged.folder() / "summary.json");
   output.stream() << toJsonText(summary);
   output.commit();
+  staged.commit();
 }
 
 }  // namespace saw_ndt

@@ -47,7 +47,12 @@ void LocalizerOptions::check() const {
   prediction.check();
   alignment.check();
   acceptance.check();
-  if (!T_base_lidar.matrix().allFinite()) throw std::invalid_argument("T_base_lidar: must be finite");
+  checkOption(source_voxel_size_m >= 0.0 && std::isfinite(source_voxel_size_m), "source_voxel_size_m",
+              source_voxel_size_m, "0 or more");
+  const Eigen::Matrix3d& R = T_base_lidar.linear();
+  if (!T_base_lidar.matrix().allFinite() || !R.isUnitary(1e-6) || R.determinant() < 0.0) {
+    throw std::invalid_argument("T_base_lidar: must be a finite rigid transform");
+  }
 }
 
 const char* toString(Acceptance acceptance) {
@@ -129,11 +134,11 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
   const Stopwatch total;
   LocalizationResult result;
   result.stamp_s = stamp_s;
+  result.T_map_base_predicted = prediction_.predict(stamp_s);
   const SourcePoints& source = makeSource(scan, result.times);
   result.source_points = source.size();
 
   const Stopwatch alignment;
-  result.T_map_base_predicted = prediction_.predict(stamp_s);
   result.alignment = aligner_.align(*map_, source, result.T_map_base_predicted, options_.alignment);
   result.times.align_ms = alignment.milliseconds();
 

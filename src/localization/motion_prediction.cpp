@@ -1,6 +1,7 @@
 #include "saw_ndt/localization/motion_prediction.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
@@ -11,6 +12,22 @@ namespace {
 Eigen::Vector3d bounded(const Eigen::Vector3d& vector, double limit) {
   const double length = vector.norm();
   return length > limit ? Eigen::Vector3d(vector * (limit / length)) : vector;
+}
+
+/// The J for which a body that moves at v (m/s, own frame) and turns at w (rad/s) for t seconds comes to J(w t) v t.
+Eigen::Matrix3d meanRotation(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  const Eigen::Matrix3d K = skewSymmetric(rotation_vector);
+  // Up to here the terms left out are less than 1e-13; beyond, the quotients below keep their digits.
+  if (angle < 1e-4) return Eigen::Matrix3d::Identity() + 0.5 * K + K * K / 6.0;
+  const double squared = angle * angle;
+  const double sine_of_half = std::sin(0.5 * angle);
+  return Eigen::Matrix3d::Identity() + 2.0 * sine_of_half * sine_of_half / squared * K +
+         (angle - std::sin(angle)) / (squared * angle) * K * K;
+}
+
+void requireFinite(const Eigen::Isometry3d& T_map_base) {
+  if (!T_map_base.matrix().allFinite()) throw std::invalid_argument("T_map_base: must be finite");
 }
 
 }  // namespace
@@ -24,30 +41,37 @@ void MotionPredictionOptions::check() const {
 MotionPrediction::MotionPrediction(const MotionPredictionOptions& options) : options_(options) { options_.check(); }
 
 void MotionPrediction::reset(const Eigen::Isometry3d& T_map_base) {
+  requireFinite(T_map_base);
   T_map_last_ = T_map_base;
   last_stamp_s_.reset();
   velocity_known_ = false;
 }
 
 void MotionPrediction::accept(const Eigen::Isometry3d& T_map_base, double stamp_s) {
+  requireFinite(T_map_base);
+  checkOption(std::isfinite(stamp_s), "stamp_s", stamp_s, "finite");
   const double elapsed_s = last_stamp_s_ ? stamp_s - *last_stamp_s_ : 0.0;
   velocity_known_ = elapsed_s > 0.0;
   if (velocity_known_) {
     const Eigen::Isometry3d T_last_now = T_map_last_.inverse() * T_map_base;
     const Eigen::AngleAxisd turn(T_last_now.linear());
-    velocity_base_mps_ = bounded(T_last_now.translation() / elapsed_s, options_.max_speed_mps);
-    turn_rate_base_radps_ = bounded(turn.axis() * turn.angle() / elapsed_s, options_.max_turn_rate_radps);
+    const Eigen::Vector3d turned = turn.axis() * turn.angle();
+    const Eigen::Vector3d driven = meanRotation(turned).inverse() * T_last_now.translation();
+    velocity_base_mps_ = bounded(driven / elapsed_s, options_.max_speed_mps);
+    turn_rate_base_radps_ = bounded(turned / elapsed_s, options_.max_turn_rate_radps);
   }
   T_map_last_ = T_map_base;
   last_stamp_s_ = stamp_s;
 }
 
 Eigen::Isometry3d MotionPrediction::predict(double stamp_s) const {
+  checkOption(std::isfinite(stamp_s), "stamp_s", stamp_s, "finite");
   const double elapsed_s = timeSinceLast(stamp_s).value_or(0.0);
   if (!velocity_known_ || elapsed_s <= 0.0) return T_map_last_;
   Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();
-  T_last_next.translation() = velocity_base_mps_ * elapsed_s;
-  T_last_next.linear() = rotationFromVector(turn_rate_base_radps_ * elapsed_s);
+  const Eigen::Vector3d turned = turn_rate_base_radps_ * elapsed_s;
+  T_last_next.translation() = meanRotation(turned) * velocity_base_mps_ * elapsed_s;
+  T_last_next.linear() = rotationFromVector(turned);
   return normalizedRotation(T_map_last_ * T_last_next);
 }
 

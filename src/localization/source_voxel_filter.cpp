@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 constexpr std::size_t kLeastSlots = 1u << 17;
+constexpr float kFarthestVoxel = 2.0e9f;
 
 }  // namespace
 
@@ -50,7 +51,8 @@ void SourceVoxelFilter::add(const Eigen::Vector3f& point, StructuralLabel label)
     return;
   }
   const Eigen::Vector3f voxel = (point * inverse_size_).array().floor();
-  if (!(voxel.cwiseAbs().maxCoeff() < 2.0e9f)) return;
+  // One by one: maxCoeff() passes over a NaN that is not the first coefficient.
+  if (!(voxel.array().abs() < kFarthestVoxel).all()) return;
   const Eigen::Vector3i coordinate = voxel.cast<int>();
   const std::size_t slot = find(coordinate, label);
   std::uint32_t number = slots_[slot];

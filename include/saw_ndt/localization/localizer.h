@@ -50,7 +50,7 @@ const char* toString(Acceptance acceptance);
 struct StageTimes {
   double segment_ms = 0.0;  ///< labels of the scan
   double filter_ms = 0.0;   ///< ground subsampling, base frame, source voxels
-  double align_ms = 0.0;    ///< prediction and registration
+  double align_ms = 0.0;    ///< registration
   double total_ms = 0.0;    ///< from the scan in memory to the pose, likelihoods and acceptance included
 };
 
@@ -81,11 +81,12 @@ class Localizer {
   ///         has no labels while the method segments
   Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options);
 
-  /// Where the vehicle is at the first scan, or after it was lost.
+  /// Where the vehicle is at the first scan, or after it was lost. @throws std::invalid_argument unless it is finite
   void setInitialPose(const Eigen::Isometry3d& T_map_base) { prediction_.reset(T_map_base); }
 
   /// @param scan     in the LiDAR frame
   /// @param stamp_s  time of the scan; stamps should grow
+  /// @throws std::invalid_argument where the stamp is not finite
   LocalizationResult localize(const ScanView& scan, double stamp_s);
 
   const LocalizerOptions& options() const { return options_; }

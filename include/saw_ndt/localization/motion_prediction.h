@@ -13,13 +13,15 @@ struct MotionPredictionOptions {
   void check() const;
 };
 
-/// Predicts the next pose from the last two accepted ones and their stamps: constant velocity, bounded (Section III.C
-/// of the paper). Before there are two, the last pose.
+/// Predicts the next pose from the last two accepted ones and their stamps (Section III.C of the paper): constant
+/// velocity and turn rate in the vehicle's own frame, a circle where it turns, both bounded. Before there are two, the
+/// last pose.
 class MotionPrediction {
  public:
   explicit MotionPrediction(const MotionPredictionOptions& options = {});
 
-  /// Forgets all poses and starts from one whose stamp is not known.
+  /// Forgets all poses and starts from one whose stamp is not known. Here and below what is not finite throws
+  /// std::invalid_argument.
   void reset(const Eigen::Isometry3d& T_map_base);
   /// Adds an accepted pose. Stamps (s) that do not grow leave the velocity unknown.
   void accept(const Eigen::Isometry3d& T_map_base, double stamp_s);
@@ -36,7 +38,7 @@ class MotionPrediction {
   Eigen::Isometry3d T_map_last_ = Eigen::Isometry3d::Identity();
   std::optional<double> last_stamp_s_;
   bool velocity_known_ = false;
-  Eigen::Vector3d velocity_base_mps_ = Eigen::Vector3d::Zero();  // of the step from one accepted pose to the next
+  Eigen::Vector3d velocity_base_mps_ = Eigen::Vector3d::Zero();  // in the frame of the moving base
   Eigen::Vector3d turn_rate_base_radps_ = Eigen::Vector3d::Zero();
 };
 

@@ -18,7 +18,8 @@ class SourceVoxelFilter {
 
   /// Starts a new source; with labels or without.
   void start(bool labelled);
-  /// Adds a point (m, frame of the source). What is not finite or beyond 2^31 voxels from the origin is passed over.
+  /// Adds a point (m, frame of the source). What is not finite, or 2e9 voxels or more from the origin along an axis, is
+  /// passed over.
   void add(const Eigen::Vector3f& point, StructuralLabel label);
   /// The centroids in the order in which their voxels were first met. Valid until the next start().
   const SourcePoints& finish();

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+#include "saw_ndt/localization/localizer.h"
+#include "saw_ndt/map/sequence_map.h"
+#include "saw_ndt/segmentation/cloud_view.h"
+#include "synthetic_drive.h"
+#include "temporary_folder.h"
+
+namespace {
+std::atomic<std::size_t> allocated_bytes{0};
+}
+
+// Replaces the operators of this whole program: what is counted are the bytes that the library asks for.
+void* operator new(std::size_t size) {
+  allocated_bytes += size;
+  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace saw_ndt {
+namespace {
+
+TEST(Localizer, AllocatesNothingOfAScansSizeInTheSteadyState) {
+  const SensorModel sensor = SensorModel::named("VLP-16");
+  const TemporaryFolder folder;
+  const SyntheticDrive drive = driveDownTheStreet(sensor, 4);
+  writeKittiDrive(folder.path(), drive);
+  SequenceMapOptions map_options;
+  map_options.segmentation->sensor = sensor;
+  const WeightedVoxelMap map = buildSequenceMap(KittiSequence(folder.path()), {0, 2}, map_options).build();
+  for (const std::string method : {"weighted", "classical"}) {
+    LocalizerOptions options;
+    options.method = LocalizationMethod::named(method);
+    options.segmentation.sensor = sensor;
+    options.alignment.threads = 1;
+    VoxelWeighting weighting;
+    weighting.confidence = options.method.confidence;
+    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map.reweighted(weighting)), options);
+    std::size_t before = 0;
+    for (const bool settled : {false, true}) {
+      localizer.setInitialPose(drive.T_map_lidar[0]);
+      before = allocated_bytes;
+      for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+        const bool accepted = localizer.localize(viewOf(drive.scans[i]), drive.stamps_s[i]).accepted();
+        EXPECT_TRUE(accepted) << settled;
+      }
+    }
+    EXPECT_LT((allocated_bytes - before) / drive.scans.size(), 2048U) << method;
+  }
+}
+
+TEST(SourceVoxelFilter, AllocatesNothingInTheSteadyState) {
+  SourceVoxelFilter filter(0.2);
+  std::size_t before = 0;
+  for (int round = 0; round < 3; ++round) {
+    before = allocated_bytes;
+    filter.start(true);
+    for (int i = 0; i < 200000; ++i) {
+      const auto n = static_cast<float>(i);
+      filter.add({0.3F * std::fmod(n, 400.0F), 0.001F * n, 1.0F}, StructuralLabel::NonGround);
+    }
+    EXPECT_GT(filter.finish().size(), 131072U / 2);  // beyond the first table
+  }
+  EXPECT_EQ(allocated_bytes - before, 0U);
+}
+
+}  // namespace
+}  // namespace saw_ndt

@@ -1,0 +1,140 @@
+#include "saw_ndt/localization/motion_prediction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "saw_ndt/common/geometry.h"
+#include "temporary_folder.h"
+
+namespace saw_ndt {
+namespace {
+
+Eigen::Isometry3d poseAt(double x, double y, double yaw) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << x, y, 0.5;
+  T.linear() = rotationFromVector({0.0, 0.0, yaw});
+  return T;
+}
+
+/// 10 m/s on a circle of 20 m radius: 0.5 rad/s.
+Eigen::Isometry3d onCircle(double stamp_s) {
+  const double yaw = 0.5 * stamp_s;
+  return poseAt(20.0 * std::sin(yaw), 20.0 * (1.0 - std::cos(yaw)), yaw);
+}
+
+void expectSamePose(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double tolerance) {
+  EXPECT_LT((a.translation() - b.translation()).norm(), tolerance);
+  EXPECT_LT(rotationAngle(a.linear().transpose() * b.linear()), tolerance);
+}
+
+TEST(MotionPrediction, FollowsACircleWhateverTheStamps) {
+  MotionPrediction prediction;
+  prediction.reset(onCircle(0.0));
+  double last_s = 0.0;
+  prediction.accept(onCircle(last_s), last_s);
+  for (const double step_s : {0.1, 0.1, 0.05, 0.3, 1e-6, 2.0, 0.1}) {
+    prediction.accept(onCircle(last_s + step_s), last_s + step_s);
+    last_s += step_s;
+    ASSERT_TRUE(prediction.velocityKnown());
+    const double tolerance = step_s < 1e-3 ? 1e-6 : 1e-9;  // positions of 1e-15 m over a microsecond
+    for (const double ahead_s : {0.0, 0.05, 0.1, 0.7}) {
+      expectSamePose(prediction.predict(last_s + ahead_s), onCircle(last_s + ahead_s), tolerance);
+    }
+  }
+}
+
+TEST(MotionPrediction, GoesStraightAndStands) {
+  MotionPrediction prediction;
+  prediction.accept(poseAt(1.0, 2.0, 0.7), 10.0);
+  prediction.accept(poseAt(1.0 + std::cos(0.7), 2.0 + std::sin(0.7), 0.7), 10.1);
+  expectSamePose(prediction.predict(10.25), poseAt(1.0 + 2.5 * std::cos(0.7), 2.0 + 2.5 * std::sin(0.7), 0.7), 1e-9);
+  prediction.accept(poseAt(1.0 + std::cos(0.7), 2.0 + std::sin(0.7), 0.7), 10.2);
+  expectSamePose(prediction.predict(11.0), poseAt(1.0 + std::cos(0.7), 2.0 + std::sin(0.7), 0.7), 1e-12);
+}
+
+TEST(MotionPrediction, FollowsAScrewInThreeDimensions) {
+  Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
+  step.translation() << 0.5, -0.2, 0.1;
+  step.linear() = rotationFromVector({0.03, -0.05, 0.08});
+  MotionPrediction prediction;
+  const Eigen::Isometry3d start = poseAt(-3.0, 4.0, 2.0);
+  prediction.accept(start, 0.0);
+  prediction.accept(start * step, 0.1);
+  expectSamePose(prediction.predict(0.2), start * step * step, 1e-12);
+  expectSamePose(prediction.predict(0.4), start * step * step * step * step, 1e-12);
+}
+
+TEST(MotionPrediction, BoundsSpeedAndTurnRate) {
+  MotionPredictionOptions options;
+  options.max_speed_mps = 20.0;
+  options.max_turn_rate_radps = 0.5;
+  MotionPrediction prediction(options);
+  prediction.accept(poseAt(0.0, 0.0, 0.0), 0.0);
+  prediction.accept(poseAt(5.0, 0.0, 0.0), 0.1);  // 50 m/s
+  expectSamePose(prediction.predict(0.2), poseAt(7.0, 0.0, 0.0), 1e-12);
+  prediction.accept(poseAt(5.0, 0.0, 0.3), 0.2);  // 3 rad/s
+  expectSamePose(prediction.predict(0.4), poseAt(5.0, 0.0, 0.4), 1e-12);
+}
+
+TEST(MotionPrediction, IsTheLastPoseBeforeThereAreTwo) {
+  MotionPrediction prediction;
+  expectSamePose(prediction.predict(5.0), Eigen::Isometry3d::Identity(), 1e-15);
+  prediction.reset(poseAt(1.0, 1.0, 1.0));
+  EXPECT_FALSE(prediction.timeSinceLast(5.0).has_value());
+  expectSamePose(prediction.predict(5.0), poseAt(1.0, 1.0, 1.0), 1e-15);
+  prediction.accept(poseAt(2.0, 2.0, 1.0), 5.0);
+  EXPECT_FALSE(prediction.velocityKnown());
+  EXPECT_DOUBLE_EQ(prediction.timeSinceLast(5.5).value(), 0.5);
+  expectSamePose(prediction.predict(6.0), poseAt(2.0, 2.0, 1.0), 1e-15);
+}
+
+TEST(MotionPrediction, StampsThatDoNotGrowLeaveTheVelocityUnknown) {
+  for (const double second_s : {1.0, 0.5}) {
+    MotionPrediction prediction;
+    prediction.accept(poseAt(0.0, 0.0, 0.0), 0.9);
+    prediction.accept(poseAt(1.0, 0.0, 0.0), 1.0);
+    EXPECT_TRUE(prediction.velocityKnown());
+    // Before or at the last stamp there is nothing to predict.
+    expectSamePose(prediction.predict(1.0), poseAt(1.0, 0.0, 0.0), 1e-15);
+    expectSamePose(prediction.predict(0.2), poseAt(1.0, 0.0, 0.0), 1e-15);
+    prediction.accept(poseAt(3.0, 0.0, 0.0), second_s);
+    EXPECT_FALSE(prediction.velocityKnown());
+    expectSamePose(prediction.predict(2.0), poseAt(3.0, 0.0, 0.0), 1e-15);
+    prediction.accept(poseAt(4.0, 0.0, 0.0), second_s + 1.0);
+    expectSamePose(prediction.predict(second_s + 2.0), poseAt(5.0, 0.0, 0.0), 1e-12);
+  }
+}
+
+TEST(MotionPrediction, ResetForgets) {
+  MotionPrediction prediction;
+  prediction.accept(onCircle(0.0), 0.0);
+  prediction.accept(onCircle(0.1), 0.1);
+  prediction.reset(poseAt(7.0, 8.0, 0.2));
+  EXPECT_FALSE(prediction.velocityKnown());
+  EXPECT_FALSE(prediction.timeSinceLast(0.2).has_value());
+  expectSamePose(prediction.predict(0.2), poseAt(7.0, 8.0, 0.2), 1e-15);
+  prediction.accept(poseAt(8.0, 8.0, 0.2), 0.2);
+  EXPECT_FALSE(prediction.velocityKnown());
+}
+
+TEST(MotionPrediction, RefusesWhatIsNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  MotionPrediction prediction;
+  expectThrows<std::invalid_argument>([&] { prediction.reset(poseAt(0.0, nan, 0.0)); }, {"T_map_base"});
+  expectThrows<std::invalid_argument>([&] { prediction.accept(poseAt(0.0, nan, 0.0), 1.0); }, {"T_map_base"});
+  expectThrows<std::invalid_argument>([&] { prediction.accept(poseAt(0.0, 0.0, 0.0), nan); }, {"stamp_s"});
+  expectThrows<std::invalid_argument>([&] { prediction.predict(nan); }, {"stamp_s"});
+  for (const double value : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    MotionPredictionOptions options;
+    options.max_speed_mps = value;
+    expectThrows<std::invalid_argument>([&] { MotionPrediction{options}; }, {"max_speed_mps = "});
+    options = {};
+    options.max_turn_rate_radps = value;
+    expectThrows<std::invalid_argument>([&] { MotionPrediction{options}; }, {"max_turn_rate_radps = "});
+  }
+}
+
+}  // namespace
+}  // namespace saw_ndt

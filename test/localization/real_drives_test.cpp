@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "real_data.h"
+#include "saw_ndt/evaluation/sequence_localization.h"
+#include "saw_ndt/io/scan_selection.h"
+#include "saw_ndt/map/sequence_map.h"
+
+namespace saw_ndt {
+namespace {
+
+/// A real drive: a map of some of its scans, and methods that localize others in it.
+class RealDrive {
+ public:
+  RealDrive(const std::string& name, const std::string& map_scans)
+      : sequence_(realDataFolder() / "kitti" / "sequences" / name),
+        reference_(sequence_.posesLidar()),
+        map_(buildSequenceMap(sequence_, selected(map_scans), {}).build()) {}
+
+  SequenceLocalization localize(const std::string& method, const std::string& scans, int threads,
+                                LocalizationSummary& summary) const {
+    LocalizerOptions options;
+    options.method = LocalizationMethod::named(method);
+    options.alignment.threads = threads;
+    VoxelWeighting weighting;
+    weighting.confidence = options.method.confidence;
+    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map_.reweighted(weighting)), options);
+    const std::vector<int> numbers = selected(scans);
+    localizer.setInitialPose(reference_[static_cast<std::size_t>(numbers.front())]);
+    SequenceLocalization run = localizeSequence(localizer, sequence_, numbers);
+    summary = summarize(run, localizer.options(), reference_, sequence_.stamps(), 0.0);
+    return run;
+  }
+
+  /// The errors of a method, all of whose scans must be accepted.
+  TrajectoryMetrics errorsOf(const std::string& method, const std::string& scans) const {
+    LocalizationSummary summary;
+    localize(method, scans, 0, summary);
+    EXPECT_EQ(summary.rejected, 0U);
+    EXPECT_EQ(summary.metrics->evaluated_scans, summary.scans);
+    std::cout << sequence_.name() << ' ' << scans << ' ' << method << ": ATE " << summary.metrics->ate_rmse_m
+              << " m, max " << summary.metrics->position_max_m << " m, yaw MAE " << summary.metrics->yaw_mae_deg
+              << " deg, " << summary.rejected << " rejected\n";
+    return *summary.metrics;
+  }
+
+ private:
+  std::vector<int> selected(const std::string& scans) const { return parseScanSelection(scans, sequence_.scanCount()); }
+
+  KittiSequence sequence_;
+  std::vector<Eigen::Isometry3d> reference_;
+  WeightedVoxelMap map_;
+};
+
+struct Bounds {
+  double ate_m, max_m, yaw_mae_deg;
+};
+
+void expectWithin(const TrajectoryMetrics& errors, const Bounds& bounds) {
+  EXPECT_LE(errors.ate_rmse_m, bounds.ate_m);
+  EXPECT_LE(errors.position_max_m, bounds.max_m);
+  EXPECT_LE(errors.yaw_mae_deg, bounds.yaw_mae_deg);
+}
+
+class RealDrives : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
+  }
+};
+
+// One test, so that each map is built once.
+TEST_F(RealDrives, AccuracyOnFourClips) {
+  double weighted_sum_m = 0.0, classical_sum_m = 0.0;
+  {
+    const RealDrive drive("drive_0005", "0:70:2");
+    for (const std::string scans : {"1:70:2", "1:70:6", "1:70:10"}) {
+      SCOPED_TRACE("drive_0005 " + scans);
+      const TrajectoryMetrics classical = drive.errorsOf("classical", scans);
+      expectWithin(classical, {0.0045, 0.010, 0.0045});
+      expectWithin(drive.errorsOf("weighted-s50", scans), {0.0050, 0.012, 0.0055});
+      const TrajectoryMetrics weighted = drive.errorsOf("weighted", scans);
+      if (scans != "1:70:2") continue;
+      EXPECT_LE(weighted.ate_rmse_m, classical.ate_rmse_m);
+      weighted_sum_m += weighted.ate_rmse_m;
+      classical_sum_m += classical.ate_rmse_m;
+    }
+  }
+  const struct {
+    std::string name;
+    double classical_ate_m, weighted_s50_ate_m;
+  } clips[] = {{"00", 0.0030, 0.0030}, {"01", 0.0110, 0.0150}, {"03", 0.0050, 0.0070}};
+  for (const auto& clip : clips) {
+    SCOPED_TRACE(clip.name);
+    const RealDrive drive(clip.name, "0:10:2");
+    const double classical_m = drive.errorsOf("classical", "1:10:2").ate_rmse_m;
+    EXPECT_LE(classical_m, clip.classical_ate_m);
+    EXPECT_LE(drive.errorsOf("weighted-s50", "1:10:2").ate_rmse_m, clip.weighted_s50_ate_m);
+    weighted_sum_m += drive.errorsOf("weighted", "1:10:2").ate_rmse_m;
+    classical_sum_m += classical_m;
+  }
+  std::cout << "mean ATE of the four clips: weighted " << weighted_sum_m / 4 << " m, classical " << classical_sum_m / 4
+            << " m\n";
+  EXPECT_LE(weighted_sum_m, 0.97 * classical_sum_m);
+}
+
+TEST_F(RealDrives, ThreadsDoNotChangeABit) {
+  const RealDrive drive("drive_0005", "0:70:2");
+  LocalizationSummary summary;
+  const SequenceLocalization expected = drive.localize("weighted", "1:70:10", 1, summary);
+  for (const int threads : {2, 4}) {
+    const SequenceLocalization run = drive.localize("weighted", "1:70:10", threads, summary);
+    for (std::size_t i = 0; i < run.results.size(); ++i) {
+      EXPECT_TRUE(run.results[i].T_map_base.matrix() == expected.results[i].T_map_base.matrix()) << i;
+      EXPECT_EQ(run.results[i].acceptance, expected.results[i].acceptance);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace saw_ndt

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "saw_ndt/common/geometry.h"
+#include "saw_ndt/io/trajectory.h"
+#include "saw_ndt/segmentation/sensor_model.h"
+
+namespace saw_ndt {
+
+/// An axis-aligned block that stands in the street (m).
+struct Block {
+  Eigen::Vector3d low;
+  Eigen::Vector3d high;
+};
+
+/// Flat ground at z = 0, house walls with a gap on one side, parked cars and poles: every direction is constrained.
+inline std::vector<Block> streetBlocks() {
+  std::vector<Block> blocks = {{{-30, 8, 0}, {45, 8.5, 9}},    {{-30, -8.5, 0}, {4, -8, 7}},
+                               {{12, -8.5, 0}, {45, -8, 7}},   {{45, -9, 0}, {45.5, 9, 8}},
+                               {{-30.5, -9, 0}, {-30, 9, 8}},  {{2, 5, 0.2}, {6.2, 6.8, 1.5}},
+                               {{-9, 5, 0.2}, {-4.8, 6.8, 2}}, {{14, -6.7, 0.2}, {18, -5, 1.6}}};
+  for (const double x : {-18.0, -6.5, 3.0, 9.7, 20.3, 31.0}) {
+    blocks.push_back({{x, 7.0, 0}, {x + 0.3, 7.3, 6}});
+    blocks.push_back({{x + 4.1, -7.2, 0}, {x + 4.4, -6.9, 5}});
+  }
+  return blocks;
+}
+
+/// Distance (m) along a ray to the ground or the nearest block; infinity where it meets neither.
+inline double rangeInStreet(const std::vector<Block>& blocks, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& direction) {
+  double nearest = direction.z() < 0.0 ? -origin.z() / direction.z() : std::numeric_limits<double>::infinity();
+  const Eigen::Array3d inverse = direction.array().inverse();
+  for (const Block& block : blocks) {
+    const Eigen::Array3d a = (block.low - origin).array() * inverse, b = (block.high - origin).array() * inverse;
+    const double enter = a.min(b).maxCoeff(), leave = a.max(b).minCoeff();
+    if (enter > 0.0 && enter <= leave) nearest = std::min(nearest, enter);
+  }
+  return nearest;
+}
+
+/// The scan of a spinning LiDAR in the street: ring after ring from the top, azimuth rising, 1 cm of noise along the
+/// ray, nothing beyond 70 m.
+inline pcl::PointCloud<pcl::PointXYZI> scanStreet(const SensorModel& sensor, const Eigen::Isometry3d& T_street_lidar,
+                                                  unsigned seed) {
+  const std::vector<Block> blocks = streetBlocks();
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  pcl::PointCloud<pcl::PointXYZI> scan;
+  for (const double elevation_deg : sensor.elevations_deg) {
+    const double elevation = radiansFromDegrees(elevation_deg);
+    for (int column = 0; column < sensor.columns; ++column) {
+      const double azimuth = (column + 0.5) * 2.0 * kPi / sensor.columns;
+      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                                      std::sin(elevation));
+      const double range =
+          rangeInStreet(blocks, T_street_lidar.translation(), T_street_lidar.linear() * direction) + noise(random);
+      if (!(range < 70.0)) continue;
+      pcl::PointXYZI point;
+      point.getVector3fMap() = (direction * range).cast<float>();
+      point.intensity = 0.5F;
+      scan.push_back(point);
+    }
+  }
+  return scan;
+}
+
+/// A drive down the street on a circle of 50 m radius, 5 m/s and ten scans a second.
+struct SyntheticDrive {
+  std::vector<double> stamps_s;
+  std::vector<Eigen::Isometry3d> T_map_lidar;  ///< the map is the frame of the first scan
+  std::vector<pcl::PointCloud<pcl::PointXYZI>> scans;
+};
+
+inline SyntheticDrive driveDownTheStreet(const SensorModel& sensor, int scan_count) {
+  constexpr double kRadius_m = 50.0, kSpeed_mps = 5.0, kSensorHeight_m = 1.73;
+  const auto pose = [&](double stamp_s) {
+    const double yaw = kSpeed_mps * stamp_s / kRadius_m;
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() << -5.0 + kRadius_m * std::sin(yaw), -2.0 + kRadius_m * (1.0 - std::cos(yaw)), kSensorHeight_m;
+    T.linear() = rotationFromVector({0.0, 0.0, yaw});
+    return T;
+  };
+  SyntheticDrive drive;
+  for (int i = 0; i < scan_count; ++i) {
+    drive.stamps_s.push_back(0.1 * i);
+    drive.T_map_lidar.push_back(pose(0.0).inverse() * pose(0.1 * i));
+    drive.scans.push_back(scanStreet(sensor, pose(0.1 * i), static_cast<unsigned>(i)));
+  }
+  return drive;
+}
+
+/// LiDAR to left camera, as that of KITTI: x right, y down, z forward, and a lever arm.
+inline Eigen::Isometry3d syntheticCalibration() {
+  Eigen::Isometry3d Tr = Eigen::Isometry3d::Identity();
+  Tr.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  Tr.translation() << 0.05, -0.08, -0.27;
+  return Tr;
+}
+
+/// Writes a drive in KITTI layout: velodyne/, poses.txt, calib.txt and times.txt.
+inline void writeKittiDrive(const std::filesystem::path& folder, const SyntheticDrive& drive) {
+  std::filesystem::create_directories(folder / "velodyne");
+  std::vector<Eigen::Isometry3d> camera_poses;
+  std::ofstream times(folder / "times.txt");
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    std::ostringstream name;
+    name << std::setfill('0') << std::setw(6) << i << ".bin";
+    std::ofstream bin(folder / "velodyne" / name.str(), std::ios::binary);
+    for (const pcl::PointXYZI& point : drive.scans[i]) {
+      const float values[4] = {point.x, point.y, point.z, point.intensity};
+      bin.write(reinterpret_cast<const char*>(values), sizeof values);
+    }
+    times << drive.stamps_s[i] << '\n';
+    camera_poses.push_back(cameraPose(drive.T_map_lidar[i], syntheticCalibration()));
+  }
+  writeKittiTrajectory(folder / "poses.txt", camera_poses);
+  writeKittiTrajectory(folder / "calib.txt", {syntheticCalibration()});
+  std::ostringstream calibration;
+  calibration << "Tr: " << std::ifstream(folder / "calib.txt").rdbuf();
+  std::ofstream(folder / "calib.txt") << calibration.str();
+}
+
+}  // namespace saw_ndt
