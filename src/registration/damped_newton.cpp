@@ -12,6 +12,10 @@ namespace {
 // nothing constrains get a step of (nearly) zero instead of an infinite one.
 constexpr double kRidge = 1e-9;
 
+// A step that promises to raise the score by less than this share of it is as good as none: where pairs appear and
+// vanish at the faces of voxels, the score has edges on which no step, however short, ends at a slope of zero.
+constexpr double kNegligibleGain = 1e-9;
+
 Matrix6d ridged(const Matrix6d& curvature) {
   Matrix6d result = curvature;
   const double translation = curvature.diagonal().head<3>().mean();
@@ -53,8 +57,10 @@ void dampedNewton(const Evaluation& evaluate, const StepLimits& limits, double l
   };
   if (at_best.pair_count == 0) return finish(AlignmentStatus::NO_OVERLAP);
 
-  const auto is_small = [&limits](const Vector6d& step) {
-    return step.head<3>().norm() < limits.translation_epsilon_m && step.tail<3>().norm() < limits.rotation_epsilon_rad;
+  const auto is_small = [&](const Vector6d& step) {
+    return (step.head<3>().norm() < limits.translation_epsilon_m &&
+            step.tail<3>().norm() < limits.rotation_epsilon_rad) ||
+           at_best.gradient().dot(step) < kNegligibleGain * at_best.score;
   };
   Vector6d step = newtonStep(at_best, least_curvature_share);
   for (int iteration = 0; iteration < limits.max_iterations; ++iteration) {

@@ -49,8 +49,8 @@ class VoxelPairs {
 
   /// Whether voxels near the pose can be numbered at all.
   static bool reachable(const NdtLevel& level, const Eigen::Isometry3d& T_map_source) {
-    const double farthest = (T_map_source.translation() / level.resolution()).cwiseAbs().maxCoeff();
-    return farthest < kFarthestVoxel && T_map_source.linear().allFinite();
+    return ((T_map_source.translation() / level.resolution()).array().abs() < kFarthestVoxel).all() &&
+           T_map_source.linear().allFinite();
   }
 
   /// Calls visit(cell, qx, qy, qz) for every voxel that the rotated source point r (m) pairs with, q = T p - mean.
@@ -59,7 +59,7 @@ class VoxelPairs {
     static constexpr std::array<Neighbour, kNeighbourCount<method>> kNeighbours = neighbours<method>();
     const Eigen::Vector3d p = r + translation_;
     const Eigen::Vector3d voxel = (p * inverse_resolution_).array().floor();
-    if (!(voxel.cwiseAbs().maxCoeff() < kFarthestVoxel)) return;
+    if (!(voxel.array().abs() < kFarthestVoxel).all()) return;
     const std::int32_t* numbers = level_.index().cell(voxel.cast<int>() + origin_, cursor_);
     if (numbers == nullptr) return;
     const Eigen::Vector3d from_centre = p - (voxel.array() + 0.5).matrix() * resolution_;

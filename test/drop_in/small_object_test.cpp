@@ -100,8 +100,7 @@ TEST(SmallObject, MatchesPclWithPclsNeighbours) {
   EXPECT_NEAR(ours.error_rad, theirs.error_rad, 1e-3);
 }
 
-// Disabled: the line search takes a step of next to nothing here, and that counts as converged.
-TEST(SmallObject, DISABLED_MatchesPclWithPclsOptimizer) {
+TEST(SmallObject, MatchesPclWithPclsOptimizer) {
   const Outcome theirs = alignSmallObject<PclNdt>();
   const Outcome ours = alignSmallObject<Ndt>([](Ndt& ndt) {
     ndt.setOptimizer(Optimizer::NEWTON_MORE_THUENTE);

@@ -14,9 +14,7 @@ TEST(LineSearch, StepsSatisfyTheConditionsOnQuadraticsOfEveryWidth) {
   std::uniform_real_distribution<double> log_width(-3.0, 1.0), log_first(-3.0, 1.0);
   for (int trial = 0; trial < 200; ++trial) {
     const double valley = std::pow(10.0, log_width(random));
-    const auto function = [valley](double a) {
-      return ValueAndSlope{(a - valley) * (a - valley), 2.0 * (a - valley)};
-    };
+    const auto function = [valley](double a) { return ValueAndSlope{(a - valley) * (a - valley), 2.0 * (a - valley)}; };
     const ValueAndSlope at_zero = function(0.0);
     const double step = moreThuenteStep(function, at_zero, std::pow(10.0, log_first(random)), 0.0, 100.0);
     EXPECT_LE(function(step).value, at_zero.value + 1e-4 * step * at_zero.slope);

@@ -245,10 +245,10 @@ TEST(WeightedNdt, ConvertTransformIsPcls) {
   Ndt::Affine3 affine;
   Ndt::convertTransform(x, matrix);
   Ndt::convertTransform(x, affine);
-  const Eigen::Matrix3f R = (Eigen::AngleAxisf(0.3f, Eigen::Vector3f::UnitX()) *
-                             Eigen::AngleAxisf(-0.2f, Eigen::Vector3f::UnitY()) *
-                             Eigen::AngleAxisf(0.7f, Eigen::Vector3f::UnitZ()))
-                                .toRotationMatrix();
+  const Eigen::Matrix3f R =
+      (Eigen::AngleAxisf(0.3f, Eigen::Vector3f::UnitX()) * Eigen::AngleAxisf(-0.2f, Eigen::Vector3f::UnitY()) *
+       Eigen::AngleAxisf(0.7f, Eigen::Vector3f::UnitZ()))
+          .toRotationMatrix();
   EXPECT_LT((matrix.topLeftCorner<3, 3>() - R).norm(), 1e-6f);
   EXPECT_EQ(matrix, affine.matrix());
   EXPECT_LT((eulerFromRotation(R.cast<double>()) - x.tail<3>()).norm(), 1e-6);
