@@ -111,7 +111,7 @@ void print(const std::string& name, const Figures& f) {
   std::cout << std::fixed << "| " << name << " | " << std::setprecision(1) << percentile(f.align_ms, 50) << " / "
             << percentile(f.align_ms, 90) << " | " << std::setprecision(4) << percentile(f.error_m, 50) << " / "
             << percentile(f.error_m, 90) << " / " << percentile(f.error_m, 100) << " | " << percentile(f.error_deg, 50)
-            << " / " << percentile(f.error_deg, 90) << " | " << std::setprecision(5) << percentile(f.spread_m, 50)
+            << " / " << percentile(f.error_deg, 90) << " | " << std::setprecision(6) << percentile(f.spread_m, 50)
             << " / " << percentile(f.spread_m, 90) << " | " << std::setprecision(3)
             << static_cast<double>(f.successes) / static_cast<double>(f.error_m.size()) << " | ";
   if (percentile(f.evaluations, 100) > 0.0) {

@@ -39,8 +39,15 @@ for run in "drive_0005 0:70:2 1:70:2" "drive_0005 0:70:2 1:70:6" "drive_0005 0:7
       "$(field yaw_p95_deg "$json")" "$(field evaluations_mean "$json")" "$(field source_points_mean "$json")" \
       "$(field segment_ms.mean "$json")" "$(field filter_ms.mean "$json")" "$(field align_ms.mean "$json")" \
       "$(field total_ms.mean "$json")" "$(field total_ms.p95 "$json")"
+    [ "${scans##*:}" != 2 ] || echo "$method $(field ate_rmse_m "$json")" >>"$work/ate"
   done
 done
+
+echo
+echo "Mean ATE over the four runs of every second scan:"
+echo
+awk '{ if (!($1 in sum)) order[++n] = $1; sum[$1] += $2; count[$1]++ }
+  END { for (i = 1; i <= n; i++) printf "- %s: %.2f mm\n", order[i], 1000 * sum[order[i]] / count[order[i]] }' "$work/ate"
 
 echo
 echo "Ground segmentation against SemanticKITTI, means over the scans of each sequence:"

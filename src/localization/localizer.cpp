@@ -146,7 +146,7 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
   const Eigen::Isometry3d T_predicted_aligned = result.T_map_base_predicted.inverse() * T_map_aligned;
   result.correction_m = T_predicted_aligned.translation().norm();
   result.correction_rad = rotationAngle(T_predicted_aligned.linear());
-  result.likelihoods = evaluateLikelihoods(map_->fine(), source, T_map_aligned, options_.alignment.outlier_ratio,
+  result.likelihoods = evaluateLikelihoods(map_->fine(), source, T_map_aligned, AlignmentOptions().outlier_ratio,
                                            threadCount(options_.alignment.threads));
   result.acceptance = judge(result);
   if (result.accepted()) {

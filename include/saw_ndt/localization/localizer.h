@@ -17,7 +17,7 @@ namespace saw_ndt {
 
 /// When a result is published and stored (Section III.C of the paper).
 struct AcceptanceOptions {
-  double min_likelihood = 0.5;       ///< least Likelihoods::unweighted, which weights do not change
+  double min_likelihood = 0.8;       ///< least Likelihoods::unweighted, which weights do not change
   double max_correction_m = 3.0;     ///< greatest distance of the result from the prediction (m)
   double max_correction_deg = 10.0;  ///< greatest turn from the prediction (degrees)
   /// Before a velocity is known the vehicle may have moved this fast since the last pose (m/s).
