@@ -1,29 +1,14 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
-#include <new>
 
+#include "allocation_counter.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/map/sequence_map.h"
 #include "saw_ndt/segmentation/cloud_view.h"
 #include "synthetic_drive.h"
 #include "temporary_folder.h"
-
-namespace {
-std::atomic<std::size_t> allocated_bytes{0};
-}
-
-// Replaces the operators of this whole program: what is counted are the bytes that the library asks for.
-void* operator new(std::size_t size) {
-  allocated_bytes += size;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace saw_ndt {
 namespace {

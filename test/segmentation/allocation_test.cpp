@@ -1,25 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "allocation_counter.h"
 #include "saw_ndt/segmentation/ground_subsampling.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 #include "segmentation/synthetic_scan.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Replaces the operators of this whole program: what is counted is what the library asks for.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace saw_ndt {
 namespace {
@@ -36,12 +20,12 @@ TEST(ScanSegmenter, AllocatesNothingInTheSteadyState) {
   pcl::Indices kept;
   segmenter.segment(viewOf(smooth), labels);
   subsampleGround(labels, {1.0}, kept);
-  const long before = allocations;
+  const long before = allocation_count;
   for (const auto* scan : {&rough, &smooth, &rough}) {
     segmenter.segment(viewOf(*scan), labels);
     subsampleGround(labels, {0.5}, kept);
   }
-  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(allocation_count - before, 0);
 }
 
 }  // namespace

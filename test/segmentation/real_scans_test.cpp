@@ -9,6 +9,8 @@
 
 #include "real_data.h"
 #include "saw_ndt/common/geometry.h"
+#include "saw_ndt/evaluation/segmentation_score.h"
+#include "saw_ndt/io/kitti.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 
 namespace saw_ndt {
@@ -41,20 +43,7 @@ ScanView viewOf(const std::vector<float>& values) {
 double rangeOf(const float* point) { return std::hypot(point[0], point[1], point[2]); }
 double elevationDegOf(const float* point) { return degreesFromRadians(std::asin(point[2] / rangeOf(point))); }
 
-bool isGroundClass(std::uint32_t label) {
-  const std::uint32_t semantic = label & 0xFFFFU;
-  return semantic == 40 || semantic == 44 || semantic == 48 || semantic == 49 || semantic == 60 || semantic == 72;
-}
-
-struct GroundScore {
-  double true_positives = 0.0;
-  double false_positives = 0.0;
-  double false_negatives = 0.0;
-
-  double f1() const { return 2.0 * true_positives / (2.0 * true_positives + false_positives + false_negatives); }
-};
-
-GroundScore groundScore(const std::string& sequence, GroundRule rule) {
+GroundScore groundScoreOf(const std::string& sequence, GroundRule rule) {
   SegmentationOptions options;
   options.ground.rule = rule;
   ScanSegmenter segmenter(options);
@@ -62,17 +51,9 @@ GroundScore groundScore(const std::string& sequence, GroundRule rule) {
   std::vector<StructuralLabel> labels;
   for (const auto& file : scansOf(sequence)) {
     const auto points = readAll<float>(file);
-    const auto truth =
-        readAll<std::uint32_t>(file.parent_path().parent_path() / "labels" / (file.stem().string() + ".label"));
     segmenter.segment(viewOf(points), labels);
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-      if ((truth[i] & 0xFFFFU) <= 1) continue;
-      const bool found = labels[i] == StructuralLabel::Ground;
-      const bool is_ground = isGroundClass(truth[i]);
-      score.true_positives += found && is_ground ? 1.0 : 0.0;
-      score.false_positives += found && !is_ground ? 1.0 : 0.0;
-      score.false_negatives += !found && is_ground ? 1.0 : 0.0;
-    }
+    score += scoreGround(labels, readSemanticKittiLabels(file.parent_path().parent_path() / "labels" /
+                                                         (file.stem().string() + ".label")));
   }
   return score;
 }
@@ -163,10 +144,7 @@ TEST(RealGround, AgreesWithTheLabelsOfPeople) {
   for (const Limit& limit : {Limit{GroundRule::Inclination, 0.89}, Limit{GroundRule::Growing, 0.96}}) {
     GroundScore total;
     for (const char* sequence : {"00", "01", "03"}) {
-      const GroundScore score = groundScore(sequence, limit.rule);
-      total.true_positives += score.true_positives;
-      total.false_positives += score.false_positives;
-      total.false_negatives += score.false_negatives;
+      total += groundScoreOf(sequence, limit.rule);
     }
     EXPECT_GT(total.f1(), limit.f1);
   }

@@ -6,11 +6,12 @@
 
 namespace saw_ndt {
 
-/// A view of a cloud whose points begin with x, y, z as all of PCL's do; without ring numbers.
+/// A view of a cloud whose points have y and z behind x, as all of PCL's do; without ring numbers.
 template <typename PointT>
 ScanView viewOf(const pcl::PointCloud<PointT>& cloud) {
+  static_assert(sizeof(PointT) % sizeof(float) == 0, "points must be a whole number of floats apart");
   ScanView view;
-  view.xyz = cloud.empty() ? nullptr : cloud.front().data;
+  view.xyz = cloud.empty() ? nullptr : &cloud.front().x;
   view.stride = sizeof(PointT) / sizeof(float);
   view.size = cloud.size();
   view.width = cloud.width;

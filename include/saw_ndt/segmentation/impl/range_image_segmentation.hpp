@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "saw_ndt/segmentation/cloud_view.h"
 #include "saw_ndt/segmentation/range_image_segmentation.h"
 
 namespace saw_ndt {
@@ -32,15 +33,9 @@ void RangeImageSegmentation<PointT>::setOptions(const SegmentationOptions& optio
 
 template <typename PointT>
 ScanView RangeImageSegmentation<PointT>::selectedInput() {
-  static_assert(sizeof(PointT) % sizeof(float) == 0, "points must be a whole number of floats apart");
   const PointCloud& input = *this->input_;
-  ScanView scan;
-  scan.size = input.size();
-  scan.width = input.width;
-  scan.height = input.height;
+  ScanView scan = viewOf(input);
   if (input.empty()) return scan;
-  scan.xyz = &input[0].x;
-  scan.stride = sizeof(PointT) / sizeof(float);
   if constexpr (detail::HasRing<PointT>::value) {
     rings_.resize(input.size());
     std::transform(input.begin(), input.end(), rings_.begin(),
