@@ -1,5 +1,7 @@
 #include "app_options.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <boost/program_options/cmdline.hpp>
 #include <boost/program_options/errors.hpp>
@@ -318,6 +320,7 @@ int runApp(int argc, const char* const* argv, AppOptions& app, const std::functi
   };
   try {
     if (app.parse(argc, argv)) {
+      omp_set_num_threads(app.threads());  // also for parallel loops that are not told how many, such as reading a map
       work();
     } else {
       std::cout << app.help();
