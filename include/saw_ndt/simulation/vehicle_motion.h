@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace saw_ndt {
+
+/// How a vehicle with a LiDAR drives through a scene: one pose a scan.
+struct VehicleMotion {
+  std::vector<double> stamps_s;                       ///< middle of each scan, increasing
+  std::vector<Eigen::Isometry3d> T_scene_lidar;       ///< pose of the LiDAR at the stamp
+
+  int scanCount() const { return static_cast<int>(stamps_s.size()); }
+  /// The pose at a time: between two stamps, or beyond the first and last one by no more than a scan, at constant
+  /// velocity and turn rate.
+  Eigen::Isometry3d poseAt(double stamp_s) const;
+};
+
+}  // namespace saw_ndt
