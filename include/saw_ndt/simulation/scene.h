@@ -21,6 +21,9 @@ struct TriangleMesh {
   std::vector<std::uint16_t> materials;                  ///< index into Scene::materials, one a triangle
 };
 
+/// Adds the triangles of one mesh to another.
+void append(const TriangleMesh& part, TriangleMesh& whole);
+
 /// A mesh that stands somewhere; many may share one mesh.
 struct PlacedObject {
   std::uint32_t mesh = 0;  ///< index into Scene::meshes
