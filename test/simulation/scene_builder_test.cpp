@@ -1,0 +1,96 @@
+#include "saw_ndt/simulation/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "simulation/short_drive.h"
+#include "temporary_folder.h"
+
+namespace saw_ndt {
+namespace {
+
+using Place = std::array<float, 3>;
+
+std::set<Place> placesOf(const Scene& scene) {
+  std::set<Place> places;
+  for (const PlacedObject& object : scene.objects) {
+    const Eigen::Vector3f position = object.T_scene_object.translation();
+    places.insert({position.x(), position.y(), position.z()});
+  }
+  return places;
+}
+
+TEST(SceneBuilder, DrivesShareWhatStandsAndDifferInWhatMoves) {
+  DriveOptions second;
+  second.drive = 2;
+  const Scene a = shortDrive("residential").scene, b = shortDrive("residential").scene,
+              c = shortDrive("residential", second).scene;
+  EXPECT_EQ(placesOf(a), placesOf(b));
+  std::vector<Place> common;
+  const std::set<Place> places_a = placesOf(a), places_c = placesOf(c);
+  std::set_intersection(places_a.begin(), places_a.end(), places_c.begin(), places_c.end(), std::back_inserter(common));
+  // Parked cars alone differ.
+  EXPECT_GT(common.size(), places_a.size() * 8 / 10);
+  EXPECT_LT(common.size(), places_a.size());
+  EXPECT_GT(places_c.size(), common.size());
+}
+
+TEST(SceneBuilder, NothingStandsInTheVehiclesWay) {
+  for (const char* name : {"residential", "highway", "rural"}) {
+    const SimulatedDrive around = shortDrive(name);
+    const Scene& scene = around.scene;
+    ASSERT_GT(scene.objects.size(), 50U) << name;
+    for (std::size_t i = 1; i < scene.objects.size(); ++i) {  // the first is the ground
+      const PlacedObject& object = scene.objects[i];
+      const TriangleMesh& mesh = scene.meshes.at(object.mesh);
+      for (const Eigen::Vector3f& vertex : mesh.vertices) {
+        const Eigen::Vector3d point = (object.T_scene_object * vertex).cast<double>();
+        if (point.z() - around.terrain->height(point.head<2>()) > 2.2) continue;  // above the vehicle
+        for (const std::uint32_t station : around.route->stationsNear(point.head<2>(), 3.0)) {
+          const RouteStation& at = around.route->stations()[station];
+          // A vehicle of 1.8 m within 0.6 m of its lane's middle has this much room, and more.
+          ASSERT_GT((point.head<2>() - at.position.head<2>()).norm(), 1.4) << name << ": object " << i;
+        }
+        if (mesh.vertices.size() > 2000) break;  // a crown: one leaf will do
+      }
+    }
+  }
+}
+
+TEST(SceneBuilder, TrafficMovesAtItsSpeedAndNeverThroughTheVehicle) {
+  const SimulatedDrive around = shortDrive("highway", {}, 100);
+  const Scene& scene = around.scene;
+  ASSERT_GT(scene.moving_objects.size(), 10U);
+  int seen = 0;
+  for (const MovingObject& object : scene.moving_objects) {
+    for (int i = 1; i + 1 < around.motion->scanCount(); i += 7) {
+      const double stamp_s = around.motion->stamps_s[static_cast<std::size_t>(i)];
+      const Eigen::Vector3d now = object.T_scene_object(stamp_s).translation();
+      const Eigen::Vector3d later = object.T_scene_object(stamp_s + 0.01).translation();
+      if (now.z() < -1000.0 || later.z() < -1000.0) continue;
+      ++seen;
+      const double speed = (later - now).norm() / 0.01;
+      EXPECT_GT(speed, 19.0);
+      EXPECT_LT(speed, 36.0);
+      const Eigen::Vector3d own = around.motion->T_scene_lidar[static_cast<std::size_t>(i)].translation();
+      EXPECT_GT((now - own).head<2>().norm(), 2.0);
+    }
+  }
+  EXPECT_GT(seen, 50);
+}
+
+TEST(SceneBuilder, DensitiesThinObjectsAndTraffic) {
+  DriveOptions sparse;
+  sparse.object_density = 0.0;
+  sparse.traffic_density = 0.0;
+  const Scene scene = shortDrive("rural", sparse).scene;
+  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_TRUE(scene.moving_objects.empty());
+  sparse.object_density = 1.5;
+  expectThrows<std::invalid_argument>([&] { shortDrive("rural", sparse); }, {"object_density = 1.5"});
+}
+
+}  // namespace
+}  // namespace saw_ndt
