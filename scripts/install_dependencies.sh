@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache
   libpcl-dev libeigen3-dev libboost-dev libboost-program-options-dev
-  nlohmann-json3-dev
+  nlohmann-json3-dev libembree-dev gnuplot-nox
   libgtest-dev libbenchmark-dev
 )
 

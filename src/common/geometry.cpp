@@ -31,6 +31,22 @@ Eigen::Matrix3d rotationFromVector(const Eigen::Vector3d& rotation_vector) {
   return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
 }
 
+Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R) {
+  const Eigen::AngleAxisd turn(R);
+  return turn.axis() * turn.angle();
+}
+
+Eigen::Matrix3d meanRotation(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  const Eigen::Matrix3d K = skewSymmetric(rotation_vector);
+  // Up to here the terms left out are less than 1e-13; beyond, the quotients below keep their digits.
+  if (angle < 1e-4) return Eigen::Matrix3d::Identity() + 0.5 * K + K * K / 6.0;
+  const double squared = angle * angle;
+  const double sine_of_half = std::sin(0.5 * angle);
+  return Eigen::Matrix3d::Identity() + 2.0 * sine_of_half * sine_of_half / squared * K +
+         (angle - std::sin(angle)) / (squared * angle) * K * K;
+}
+
 double rotationAngle(const Eigen::Matrix3d& R) {
   const Eigen::Vector3d axis(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
   return std::atan2(axis.norm(), R.trace() - 1.0);

@@ -1,15 +1,18 @@
 #include "saw_ndt/io/kitti.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <iomanip>
 #include <stdexcept>
 
 #include "number_lines.h"
 #include "rigid_transform.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/io/atomic_output.h"
 #include "saw_ndt/io/input_file.h"
 #include "saw_ndt/io/trajectory.h"
 
@@ -20,6 +23,12 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kBytesPerPoint = 4 * sizeof(float);
+
+// Four cameras like those of KITTI's vehicle: what writeKittiCalibration() states where nothing is projected.
+constexpr double kFocalLength_px = 720.0;
+constexpr double kPrincipalPointX_px = 620.0;
+constexpr double kPrincipalPointY_px = 188.0;
+constexpr std::array<double, 4> kCameraPlaces_m = {0.0, 0.54, -0.06, 0.48};  // to the right of the left grey one
 
 /// The records of a binary file without a header; Error unless there is at least one and the last one is whole.
 template <typename Value>
@@ -40,6 +49,20 @@ std::vector<Value> readRecords(const fs::path& path, std::size_t record_bytes) {
   stream.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(size));
   if (!stream) throw Error(path.string(), "offset " + std::to_string(stream.gcount()), "could not be read on");
   return values;
+}
+
+template <typename Value>
+void writeRecords(const fs::path& path, const std::vector<Value>& values) {
+  AtomicOutput output(path);
+  output.stream().write(reinterpret_cast<const char*>(values.data()),
+                        static_cast<std::streamsize>(values.size() * sizeof(Value)));
+  output.commit();
+}
+
+void writeMatrix(std::ostream& stream, const char* key, const Eigen::Matrix<double, 3, 4>& matrix) {
+  stream << key << ':';
+  for (int i = 0; i < 12; ++i) stream << ' ' << matrix(i / 4, i % 4);
+  stream << '\n';
 }
 
 }  // namespace
@@ -67,6 +90,33 @@ std::vector<std::uint16_t> readSemanticKittiLabels(const fs::path& path) {
   std::transform(values.begin(), values.end(), classes.begin(),
                  [](std::uint32_t value) { return static_cast<std::uint16_t>(value & 0xffffU); });
   return classes;
+}
+
+void writeKittiScan(const fs::path& path, const pcl::PointCloud<pcl::PointXYZI>& scan) {
+  std::vector<float> values;
+  values.reserve(4 * scan.size());
+  for (const pcl::PointXYZI& point : scan) {
+    values.insert(values.end(), {point.x, point.y, point.z, point.intensity});
+  }
+  writeRecords(path, values);
+}
+
+void writeSemanticKittiLabels(const fs::path& path, const std::vector<std::uint16_t>& classes) {
+  writeRecords(path, std::vector<std::uint32_t>(classes.begin(), classes.end()));
+}
+
+void writeKittiCalibration(const fs::path& path, const Eigen::Isometry3d& T_camera_lidar) {
+  AtomicOutput output(path);
+  output.stream() << std::scientific << std::setprecision(12);
+  Eigen::Matrix<double, 3, 4> P;
+  P << kFocalLength_px, 0.0, kPrincipalPointX_px, 0.0, 0.0, kFocalLength_px, kPrincipalPointY_px, 0.0, 0.0, 0.0, 1.0,
+      0.0;
+  for (std::size_t camera = 0; camera < kCameraPlaces_m.size(); ++camera) {
+    P(0, 3) = -kFocalLength_px * kCameraPlaces_m[camera];
+    writeMatrix(output.stream(), ("P" + std::to_string(camera)).c_str(), P);
+  }
+  writeMatrix(output.stream(), "Tr", T_camera_lidar.matrix().topRows<3>());
+  output.commit();
 }
 
 Eigen::Isometry3d readKittiCalibration(const fs::path& path) {

@@ -104,6 +104,13 @@ std::vector<double> readStamps(const std::filesystem::path& path) {
   return stamps_s;
 }
 
+void writeStamps(const std::filesystem::path& path, const std::vector<double>& stamps_s) {
+  AtomicOutput output(path);
+  output.stream() << std::fixed << std::setprecision(9);
+  for (const double stamp_s : stamps_s) output.stream() << stamp_s << '\n';
+  output.commit();
+}
+
 void writeTumTrajectory(const std::filesystem::path& path, const std::vector<StampedPose>& trajectory) {
   AtomicOutput output(path);
   std::ostream& stream = output.stream();

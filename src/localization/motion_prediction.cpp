@@ -14,18 +14,6 @@ Eigen::Vector3d bounded(const Eigen::Vector3d& vector, double limit) {
   return length > limit ? Eigen::Vector3d(vector * (limit / length)) : vector;
 }
 
-/// The J for which a body that moves at v (m/s, own frame) and turns at w (rad/s) for t seconds comes to J(w t) v t.
-Eigen::Matrix3d meanRotation(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  const Eigen::Matrix3d K = skewSymmetric(rotation_vector);
-  // Up to here the terms left out are less than 1e-13; beyond, the quotients below keep their digits.
-  if (angle < 1e-4) return Eigen::Matrix3d::Identity() + 0.5 * K + K * K / 6.0;
-  const double squared = angle * angle;
-  const double sine_of_half = std::sin(0.5 * angle);
-  return Eigen::Matrix3d::Identity() + 2.0 * sine_of_half * sine_of_half / squared * K +
-         (angle - std::sin(angle)) / (squared * angle) * K * K;
-}
-
 void requireFinite(const Eigen::Isometry3d& T_map_base) {
   if (!T_map_base.matrix().allFinite()) throw std::invalid_argument("T_map_base: must be finite");
 }
@@ -54,8 +42,7 @@ void MotionPrediction::accept(const Eigen::Isometry3d& T_map_base, double stamp_
   velocity_known_ = elapsed_s > 0.0;
   if (velocity_known_) {
     const Eigen::Isometry3d T_last_now = T_map_last_.inverse() * T_map_base;
-    const Eigen::AngleAxisd turn(T_last_now.linear());
-    const Eigen::Vector3d turned = turn.axis() * turn.angle();
+    const Eigen::Vector3d turned = rotationVector(T_last_now.linear());
     const Eigen::Vector3d driven = meanRotation(turned).inverse() * T_last_now.translation();
     velocity_base_mps_ = bounded(driven / elapsed_s, options_.max_speed_mps);
     turn_rate_base_radps_ = bounded(turned / elapsed_s, options_.max_turn_rate_radps);

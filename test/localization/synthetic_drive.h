@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "saw_ndt/common/geometry.h"
+#include "saw_ndt/common/sensor_model.h"
 #include "saw_ndt/io/trajectory.h"
-#include "saw_ndt/segmentation/sensor_model.h"
 
 namespace saw_ndt {
 

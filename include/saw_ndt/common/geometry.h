@@ -25,6 +25,12 @@ Eigen::Isometry3d normalizedRotation(const Eigen::Isometry3d& T);
 /// The rotation whose axis times angle (rad) is `rotation_vector`.
 Eigen::Matrix3d rotationFromVector(const Eigen::Vector3d& rotation_vector);
 
+/// The inverse of rotationFromVector(), of length 0 to pi.
+Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R);
+
+/// The J for which a body that moves at v (m/s, own frame) and turns at w (rad/s) for t seconds comes to J(w t) v t.
+Eigen::Matrix3d meanRotation(const Eigen::Vector3d& rotation_vector);
+
 /// The angle of a rotation in radians, 0 to pi; exact for small angles too.
 double rotationAngle(const Eigen::Matrix3d& R);
 

@@ -20,6 +20,15 @@ pcl::PointCloud<pcl::PointXYZI> readKittiScan(const std::filesystem::path& path)
 /// readKittiScan().
 std::vector<std::uint16_t> readSemanticKittiLabels(const std::filesystem::path& path);
 
+/// Writes a Velodyne scan as readKittiScan() reads it, whole or not at all. Throws Error.
+void writeKittiScan(const std::filesystem::path& path, const pcl::PointCloud<pcl::PointXYZI>& scan);
+
+/// Writes SemanticKITTI labels, the class of each point of a scan, whole or not at all. Throws Error.
+void writeSemanticKittiLabels(const std::filesystem::path& path, const std::vector<std::uint16_t>& classes);
+
+/// Writes a KITTI calib.txt: `Tr`, and `P0` to `P3` of four cameras side by side such as KITTI's. Throws Error.
+void writeKittiCalibration(const std::filesystem::path& path, const Eigen::Isometry3d& T_camera_lidar);
+
 /// Reads the transform from the LiDAR to the left camera: the line `Tr` (or `Tr_velo_to_cam`, `Tr_velo_cam`) of a KITTI
 /// calib.txt. Throws Error where it is missing or no rigid transform.
 Eigen::Isometry3d readKittiCalibration(const std::filesystem::path& path);

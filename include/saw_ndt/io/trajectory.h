@@ -42,6 +42,9 @@ std::vector<Eigen::Isometry3d> readKittiTrajectory(const std::filesystem::path& 
 /// Reads one stamp (s) a line, as KITTI's times.txt. Throws Error that names the line.
 std::vector<double> readStamps(const std::filesystem::path& path);
 
+/// Writes one stamp (s) a line with 9 decimals. Throws Error.
+void writeStamps(const std::filesystem::path& path, const std::vector<double>& stamps_s);
+
 /// Writes TUM format: stamps and positions with 9 decimals, quaternions (qw >= 0) with 12. Throws Error.
 void writeTumTrajectory(const std::filesystem::path& path, const std::vector<StampedPose>& trajectory);
 

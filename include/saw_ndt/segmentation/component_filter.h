@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "saw_ndt/common/labels.h"
+#include "saw_ndt/common/sensor_model.h"
 #include "saw_ndt/segmentation/range_image.h"
-#include "saw_ndt/segmentation/sensor_model.h"
 
 namespace saw_ndt {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "saw_ndt/common/sensor_model.h"
 #include "saw_ndt/segmentation/range_image.h"
-#include "saw_ndt/segmentation/sensor_model.h"
 
 namespace saw_ndt {
 

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "saw_ndt/common/labels.h"
+#include "saw_ndt/common/sensor_model.h"
 #include "saw_ndt/segmentation/component_filter.h"
 #include "saw_ndt/segmentation/ground_detection.h"
 #include "saw_ndt/segmentation/range_image.h"
 #include "saw_ndt/segmentation/scan_view.h"
-#include "saw_ndt/segmentation/sensor_model.h"
 
 namespace saw_ndt {
 

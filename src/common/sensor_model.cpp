@@ -1,4 +1,4 @@
-#include "saw_ndt/segmentation/sensor_model.h"
+#include "saw_ndt/common/sensor_model.h"
 
 #include <stdexcept>
 
