@@ -3,6 +3,7 @@
 #include "app_options.h"
 #include "output_folder.h"
 #include "saw_ndt/evaluation/benchmark_output.h"
+#include "saw_ndt/evaluation/benchmark_report.h"
 #include "saw_ndt/io/staged_output.h"
 #include "segmentation_options.h"
 #include "stage_progress.h"
@@ -14,8 +15,10 @@ using saw_ndt::MapDrive;
 constexpr char kDescription[] =
     "Localizes drives by several methods, which take turns scan by scan, and compares them as the paper's Table I "
     "does: "
-    "run times, errors against the reference poses, macro averages. Writes table.md, table.csv, table.json and, for "
-    "each sequence and method, what saw_ndt_localize writes, into the folder of -output; table.md is printed, too. In "
+    "run times, errors against the reference poses, macro averages. Writes table.md, table.csv, table.json, "
+    "report.html "
+    "(with pictures, where gnuplot is installed, that are in plots/ as well) and, for each sequence and method, what "
+    "saw_ndt_localize writes, into the folder of -output; table.md is printed, too. In "
     "a map of the same drive a scan finds its own points again, as in the paper, unless -map-scans and -scans select "
     "different ones; a map of another drive along the same streets is the harder test. The reference pose of the first "
     "scan is the initial pose.";
@@ -87,8 +90,10 @@ int main(int argc, char** argv) {
     const saw_ndt::BenchmarkText text = saw_ndt::benchmarkText(tables, record, with_paper);
     const saw_ndt::StagedOutput staged(folder.path());
     saw_ndt::writeBenchmark(staged.folder(), runs, tables, text);
+    const std::string note = saw_ndt::writeBenchmarkReport(staged.folder(), runs, text);
     staged.commit();
     folder.keep();
+    if (!note.empty()) std::cerr << app.name() << ": " << note << '\n';
     std::cout << saw_ndt::toMarkdown(text);
   });
 }

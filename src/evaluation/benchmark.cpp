@@ -150,6 +150,7 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
   result.T_base_lidar = common.T_base_lidar;
   result.T_camera_lidar = drive.sequence.T_camera_lidar();
   result.skip_s = options_.skip_s;
+  result.min_likelihood = common.acceptance.min_likelihood;
   for (const int scan : scans) {
     result.T_map_base.push_back(reference_lidar[static_cast<std::size_t>(scan)] * common.T_base_lidar.inverse());
   }

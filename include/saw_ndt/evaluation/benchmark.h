@@ -65,6 +65,7 @@ struct BenchmarkRun {
   Eigen::Isometry3d T_camera_lidar = Eigen::Isometry3d::Identity();
   pcl::PointCloud<VoxelPoint> voxels;  ///< of the map, for pictures
   double skip_s = 0.0;
+  double min_likelihood = 0.0;       ///< below which scans are rejected
   std::vector<BenchmarkCell> cells;  ///< one a method
 };
 
