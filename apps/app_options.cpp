@@ -51,6 +51,12 @@ std::string textOf(const std::vector<double>& values) {
   return text;
 }
 
+std::string textOf(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
+  return text;
+}
+
 std::vector<std::string> splitAtCommas(const std::string& text) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -154,6 +160,16 @@ void AppOptions::addOption(const std::string& name, std::vector<double>* value, 
                        " numbers, where " + std::to_string(count) + " are needed");
     }
     *value = numbers;
+  });
+}
+
+void AppOptions::addOption(const std::string& name, std::vector<std::string>* value, const std::string& placeholder,
+                           const std::string& help) {
+  add(name, placeholder, help, textOf(*value), [name, value](const std::string& text) {
+    *value = splitAtCommas(text);
+    if (std::find(value->begin(), value->end(), "") != value->end()) {
+      throw UsageError("option -" + name + ": '" + text + "' has an empty word");
+    }
   });
 }
 

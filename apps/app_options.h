@@ -37,6 +37,9 @@ class AppOptions {
   /// Numbers separated by commas: as many as *value has, or any number where it is empty.
   void addOption(const std::string& name, std::vector<double>* value, const std::string& placeholder,
                  const std::string& help);
+  /// Words separated by commas, none of them empty.
+  void addOption(const std::string& name, std::vector<std::string>* value, const std::string& placeholder,
+                 const std::string& help);
   /// A switch, off unless named; in a config file `name = true`.
   void addFlag(const std::string& name, bool* value, const std::string& help);
   /// One of a few words.

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <iostream>
 
 #include "app_options.h"
@@ -18,16 +17,6 @@ constexpr char kDescription[] =
     "is printed too. A scan that is rejected gets the pose that was predicted for it. Give -sensor, -ground-rule and "
     "-mounting-pitch_deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
     "pose, and all together they tell the errors.";
-
-/// Whether the errors have a scan left after the skipped start, by the stamps of the scans localized.
-bool anyScanAfterSkip(const std::vector<int>& scans, const std::vector<double>& stamps_s, double skip_s) {
-  double first_s = stamps_s[static_cast<std::size_t>(scans.front())], last_s = first_s;
-  for (const int scan : scans) {
-    first_s = std::min(first_s, stamps_s[static_cast<std::size_t>(scan)]);
-    last_s = std::max(last_s, stamps_s[static_cast<std::size_t>(scan)]);
-  }
-  return last_s - first_s >= skip_s;
-}
 
 std::shared_ptr<const saw_ndt::WeightedVoxelMap> loadMap(const std::string& file,
                                                          const saw_ndt::LocalizationMethod& method) {
@@ -99,7 +88,7 @@ int main(int argc, char** argv) {
                                                          : reference_lidar[static_cast<std::size_t>(selected.front())] *
                                                                options.T_base_lidar.inverse());
 
-    if (!reference_lidar.empty() && !anyScanAfterSkip(selected, stamps_s, skip_s)) {
+    if (!reference_lidar.empty() && !saw_ndt::anyScanAfterSkip(selected, stamps_s, skip_s)) {
       std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
       reference_lidar.clear();
     }

@@ -21,4 +21,26 @@ nlohmann::ordered_json toJson(const DurationStatistics& durations) {
   return {{"mean", durations.mean}, {"p50", durations.p50}, {"p95", durations.p95}, {"max", durations.max}};
 }
 
+nlohmann::ordered_json toJson(const LocalizationSummary& summary) {
+  nlohmann::ordered_json json;
+  json["method"] = summary.method;
+  json["scans"] = summary.scans;
+  json["accepted"] = summary.accepted;
+  json["rejected"] = summary.rejected;
+  json["total_ms"] = toJson(summary.total_ms);
+  json["segment_ms"] = toJson(summary.segment_ms);
+  json["filter_ms"] = toJson(summary.filter_ms);
+  json["align_ms"] = toJson(summary.align_ms);
+  json["source_points_mean"] = summary.source_points_mean;
+  json["iterations_mean"] = summary.iterations_mean;
+  json["evaluations_mean"] = summary.evaluations_mean;
+  json["likelihood_mean"] = summary.likelihood_mean;
+  json["nearest_voxel_likelihood_mean"] = summary.nearest_voxel_likelihood_mean;
+  json["non_ground_likelihood_mean"] = summary.non_ground_likelihood_mean;
+  json["peak_rss_mb"] = summary.peak_rss_mb;
+  json["threads"] = summary.threads;
+  if (summary.metrics) json.update(toJson(*summary.metrics));
+  return json;
+}
+
 }  // namespace saw_ndt

@@ -1,18 +1,17 @@
 #include "saw_ndt/evaluation/sequence_localization.h"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <nlohmann/json.hpp>
-#include <system_error>
-#include <utility>
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/common/threads.h"
 #include "saw_ndt/evaluation/json.h"
 #include "saw_ndt/io/atomic_output.h"
+#include "saw_ndt/io/staged_output.h"
 #include "saw_ndt/io/trajectory.h"
 #include "saw_ndt/segmentation/cloud_view.h"
 
@@ -32,44 +31,6 @@ std::vector<double> collect(const SequenceLocalization& run, Field field) {
   for (const LocalizationResult& result : run.results) values.push_back(static_cast<double>(field(result)));
   return values;
 }
-
-/// Files that appear in a folder all together: they are written into a folder within it and moved by commit(). Without
-/// commit() those that were there stay as they were and nothing is left behind.
-class StagedFiles {
- public:
-  /// @throws Error where one of the names is taken by a folder, or nothing can be written
-  StagedFiles(const std::filesystem::path& target, std::vector<std::string> names)
-      : target_(target), folder_(target / (".saw_ndt-" + std::to_string(getpid()))), names_(std::move(names)) {
-    std::error_code error;
-    for (const std::string& name : names_) {
-      if (std::filesystem::is_directory(target_ / name, error))
-        throw Error((target_ / name).string(), "", "is a folder");
-    }
-    std::filesystem::create_directory(folder_, error);
-    if (error) throw Error(target.string(), "", error.message());
-  }
-  ~StagedFiles() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  StagedFiles(const StagedFiles&) = delete;
-  StagedFiles& operator=(const StagedFiles&) = delete;
-
-  const std::filesystem::path& folder() const { return folder_; }
-
-  /// @throws Error
-  void commit() const {
-    for (const std::string& name : names_) {
-      std::error_code error;
-      std::filesystem::rename(folder_ / name, target_ / name, error);
-      if (error) throw Error((target_ / name).string(), "", error.message());
-    }
-  }
-
- private:
-  std::filesystem::path target_, folder_;
-  std::vector<std::string> names_;
-};
 
 void writeFrames(const std::filesystem::path& path, const SequenceLocalization& run) {
   AtomicOutput output(path);
@@ -95,15 +56,34 @@ void writeFrames(const std::filesystem::path& path, const SequenceLocalization& 
 
 SequenceLocalization localizeSequence(Localizer& localizer, const KittiSequence& sequence,
                                       const std::vector<int>& scans, const std::function<void()>& scan_done) {
+  const auto localize = [&](const ScanView& scan, double stamp_s) { return localizer.localize(scan, stamp_s); };
+  return localizeByTurns({localize}, sequence, scans, scan_done).front();
+}
+
+std::vector<SequenceLocalization> localizeByTurns(const std::vector<ScanLocalizer>& localizers,
+                                                  const KittiSequence& sequence, const std::vector<int>& scans,
+                                                  const std::function<void()>& turn_done) {
   const std::vector<double> stamps_s = sequence.stamps();
-  SequenceLocalization run;
-  run.scans = scans;
-  for (const int scan : scans) {
-    const pcl::PointCloud<pcl::PointXYZI> cloud = sequence.readScan(scan);
-    run.results.push_back(localizer.localize(viewOf(cloud), stamps_s[static_cast<std::size_t>(scan)]));
-    if (scan_done) scan_done();
+  std::vector<SequenceLocalization> runs(localizers.size());
+  for (SequenceLocalization& run : runs) run.scans = scans;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const pcl::PointCloud<pcl::PointXYZI> cloud = sequence.readScan(scans[i]);
+    for (std::size_t turn = 0; turn < localizers.size(); ++turn) {
+      const std::size_t whose = (i + turn) % localizers.size();
+      runs[whose].results.push_back(localizers[whose](viewOf(cloud), stamps_s[static_cast<std::size_t>(scans[i])]));
+      if (turn_done) turn_done();
+    }
   }
-  return run;
+  return runs;
+}
+
+bool anyScanAfterSkip(const std::vector<int>& scans, const std::vector<double>& stamps_s, double skip_s) {
+  double first_s = stamps_s[static_cast<std::size_t>(scans.front())], last_s = first_s;
+  for (const int scan : scans) {
+    first_s = std::min(first_s, stamps_s[static_cast<std::size_t>(scan)]);
+    last_s = std::max(last_s, stamps_s[static_cast<std::size_t>(scan)]);
+  }
+  return last_s - first_s >= skip_s;
 }
 
 LocalizationSummary summarize(const SequenceLocalization& run, const LocalizerOptions& options,
@@ -139,27 +119,7 @@ LocalizationSummary summarize(const SequenceLocalization& run, const LocalizerOp
   return summary;
 }
 
-std::string toJsonText(const LocalizationSummary& summary) {
-  nlohmann::ordered_json json;
-  json["method"] = summary.method;
-  json["scans"] = summary.scans;
-  json["accepted"] = summary.accepted;
-  json["rejected"] = summary.rejected;
-  json["total_ms"] = toJson(summary.total_ms);
-  json["segment_ms"] = toJson(summary.segment_ms);
-  json["filter_ms"] = toJson(summary.filter_ms);
-  json["align_ms"] = toJson(summary.align_ms);
-  json["source_points_mean"] = summary.source_points_mean;
-  json["iterations_mean"] = summary.iterations_mean;
-  json["evaluations_mean"] = summary.evaluations_mean;
-  json["likelihood_mean"] = summary.likelihood_mean;
-  json["nearest_voxel_likelihood_mean"] = summary.nearest_voxel_likelihood_mean;
-  json["non_ground_likelihood_mean"] = summary.non_ground_likelihood_mean;
-  json["peak_rss_mb"] = summary.peak_rss_mb;
-  json["threads"] = summary.threads;
-  if (summary.metrics) json.update(toJson(*summary.metrics));
-  return json.dump(2) + "\n";
-}
+std::string toJsonText(const LocalizationSummary& summary) { return toJson(summary).dump(2) + "\n"; }
 
 void writeLocalization(const std::filesystem::path& folder, const SequenceLocalization& run,
                        const LocalizationSummary& summary, const Eigen::Isometry3d& T_base_lidar,
@@ -170,7 +130,7 @@ void writeLocalization(const std::filesystem::path& folder, const SequenceLocali
     base_poses.push_back({result.stamp_s, result.T_map_base});
     camera_poses.push_back(cameraPose(result.T_map_base * T_base_lidar, T_camera_lidar));
   }
-  const StagedFiles staged(folder, {"trajectory_tum.txt", "trajectory_kitti.txt", "frames.csv", "summary.json"});
+  const StagedOutput staged(folder);
   writeTumTrajectory(staged.folder() / "trajectory_tum.txt", base_poses);
   writeKittiTrajectory(staged.folder() / "trajectory_kitti.txt", camera_poses);
   writeFrames(staged.folder() / "frames.csv", run);

@@ -32,6 +32,20 @@ Matrix6d inverseOrZero(const Matrix6d& information) {
   return decomposition.isInvertible() ? Matrix6d(decomposition.inverse()) : Matrix6d(Matrix6d::Zero());
 }
 
+Acceptance judge(const LocalizationResult& result, const AcceptanceOptions& limits,
+                 const MotionPrediction& prediction) {
+  double max_correction_m = limits.max_correction_m;
+  if (!prediction.velocityKnown()) {
+    const double elapsed_s = std::max(0.0, prediction.timeSinceLast(result.stamp_s).value_or(0.0));
+    max_correction_m = std::max(max_correction_m, limits.max_unknown_speed_mps * elapsed_s);
+  }
+  if (!result.alignment.converged()) return Acceptance::NOT_CONVERGED;
+  if (!(result.likelihoods.unweighted >= limits.min_likelihood)) return Acceptance::LOW_LIKELIHOOD;
+  if (!(result.correction_m <= max_correction_m)) return Acceptance::LARGE_TRANSLATION;
+  if (!(degreesFromRadians(result.correction_rad) <= limits.max_correction_deg)) return Acceptance::LARGE_ROTATION;
+  return Acceptance::ACCEPTED;
+}
+
 }  // namespace
 
 void AcceptanceOptions::check() const {
@@ -69,6 +83,16 @@ const char* toString(Acceptance acceptance) {
       return "large rotation";
   }
   return "unknown";
+}
+
+void concludeLocalization(LocalizationResult& result, const AcceptanceOptions& limits, MotionPrediction& prediction) {
+  const Eigen::Isometry3d& T_map_aligned = result.alignment.T_map_source;
+  const Eigen::Isometry3d T_predicted_aligned = result.T_map_base_predicted.inverse() * T_map_aligned;
+  result.correction_m = T_predicted_aligned.translation().norm();
+  result.correction_rad = rotationAngle(T_predicted_aligned.linear());
+  result.acceptance = judge(result, limits, prediction);
+  result.T_map_base = result.accepted() ? T_map_aligned : result.T_map_base_predicted;
+  if (result.accepted()) prediction.accept(T_map_aligned, result.stamp_s);
 }
 
 Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options)
@@ -116,20 +140,6 @@ const SourcePoints& Localizer::makeSource(const ScanView& scan, StageTimes& time
   return source;
 }
 
-Acceptance Localizer::judge(const LocalizationResult& result) const {
-  const AcceptanceOptions& limits = options_.acceptance;
-  double max_correction_m = limits.max_correction_m;
-  if (!prediction_.velocityKnown()) {
-    const double elapsed_s = std::max(0.0, prediction_.timeSinceLast(result.stamp_s).value_or(0.0));
-    max_correction_m = std::max(max_correction_m, limits.max_unknown_speed_mps * elapsed_s);
-  }
-  if (!result.alignment.converged()) return Acceptance::NOT_CONVERGED;
-  if (!(result.likelihoods.unweighted >= limits.min_likelihood)) return Acceptance::LOW_LIKELIHOOD;
-  if (!(result.correction_m <= max_correction_m)) return Acceptance::LARGE_TRANSLATION;
-  if (!(degreesFromRadians(result.correction_rad) <= limits.max_correction_deg)) return Acceptance::LARGE_ROTATION;
-  return Acceptance::ACCEPTED;
-}
-
 LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
   const Stopwatch total;
   LocalizationResult result;
@@ -142,20 +152,10 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
   result.alignment = aligner_.align(*map_, source, result.T_map_base_predicted, options_.alignment);
   result.times.align_ms = alignment.milliseconds();
 
-  const Eigen::Isometry3d& T_map_aligned = result.alignment.T_map_source;
-  const Eigen::Isometry3d T_predicted_aligned = result.T_map_base_predicted.inverse() * T_map_aligned;
-  result.correction_m = T_predicted_aligned.translation().norm();
-  result.correction_rad = rotationAngle(T_predicted_aligned.linear());
-  result.likelihoods = evaluateLikelihoods(map_->fine(), source, T_map_aligned, AlignmentOptions().outlier_ratio,
-                                           threadCount(options_.alignment.threads));
-  result.acceptance = judge(result);
-  if (result.accepted()) {
-    result.T_map_base = T_map_aligned;
-    result.covariance = inverseOrZero(result.alignment.information);
-    prediction_.accept(T_map_aligned, stamp_s);
-  } else {
-    result.T_map_base = result.T_map_base_predicted;
-  }
+  result.likelihoods = evaluateLikelihoods(map_->fine(), source, result.alignment.T_map_source,
+                                           AlignmentOptions().outlier_ratio, threadCount(options_.alignment.threads));
+  concludeLocalization(result, options_.acceptance, prediction_);
+  if (result.accepted()) result.covariance = inverseOrZero(result.alignment.information);
   result.times.total_ms = total.milliseconds();
   return result;
 }

@@ -4,6 +4,7 @@
 
 #include "saw_ndt/evaluation/metrics.h"
 #include "saw_ndt/evaluation/relative_errors.h"
+#include "saw_ndt/evaluation/sequence_localization.h"
 #include "saw_ndt/evaluation/statistics.h"
 
 // The one public header that needs nlohmann-json; the library's others do without.
@@ -17,5 +18,8 @@ nlohmann::ordered_json toJson(const KittiRelativeErrors& errors);
 
 /// {"mean", "p50", "p95", "max"}
 nlohmann::ordered_json toJson(const DurationStatistics& durations);
+
+/// The object that is summary.json; the errors are members of it where they are known.
+nlohmann::ordered_json toJson(const LocalizationSummary& summary);
 
 }  // namespace saw_ndt

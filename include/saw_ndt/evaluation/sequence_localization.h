@@ -25,6 +25,20 @@ struct SequenceLocalization {
 SequenceLocalization localizeSequence(Localizer& localizer, const KittiSequence& sequence,
                                       const std::vector<int>& scans, const std::function<void()>& scan_done = {});
 
+/// One way of localizing a scan: that of a Localizer or of another method.
+using ScanLocalizer = std::function<LocalizationResult(const ScanView& scan, double stamp_s)>;
+
+/// The same for several methods at once. They take turns at every scan, another one first each time, so that a slow
+/// moment of the machine hits all of them; a scan is read once.
+/// @param turn_done  called after each turn, scans times methods in all; may be empty
+/// @return one run a method, in their order
+std::vector<SequenceLocalization> localizeByTurns(const std::vector<ScanLocalizer>& localizers,
+                                                  const KittiSequence& sequence, const std::vector<int>& scans,
+                                                  const std::function<void()>& turn_done = {});
+
+/// Whether metrics that leave out the first `skip_s` seconds have a scan left. @param stamps_s  of the whole drive
+bool anyScanAfterSkip(const std::vector<int>& scans, const std::vector<double>& stamps_s, double skip_s);
+
 /// The figures of a run; the fields are those of summary.json.
 struct LocalizationSummary {
   std::string method;

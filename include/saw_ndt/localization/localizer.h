@@ -72,6 +72,10 @@ struct LocalizationResult {
   bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
 };
 
+/// Completes a result of which prediction, alignment and likelihoods are known: judges it by the limits and sets
+/// corrections, acceptance and pose. An accepted pose goes into `prediction`.
+void concludeLocalization(LocalizationResult& result, const AcceptanceOptions& limits, MotionPrediction& prediction);
+
 /// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. Scratch memory is kept from scan to
 /// scan.
 class Localizer {
@@ -93,7 +97,6 @@ class Localizer {
 
  private:
   const SourcePoints& makeSource(const ScanView& scan, StageTimes& times);
-  Acceptance judge(const LocalizationResult& result) const;
 
   std::shared_ptr<const WeightedVoxelMap> map_;
   LocalizerOptions options_;

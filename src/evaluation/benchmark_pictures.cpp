@@ -1,0 +1,222 @@
+#include "saw_ndt/evaluation/benchmark_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "saw_ndt/evaluation/map_picture.h"
+#include "saw_ndt/evaluation/method_colour.h"
+#include "saw_ndt/evaluation/scan_errors.h"
+#include "saw_ndt/evaluation/statistics.h"
+
+namespace saw_ndt {
+namespace {
+
+constexpr int kWidth_px = 1000, kPanel_px = 105, kTitle_px = 45, kAxis_px = 62;
+constexpr double kScanPeriod_ms = 100.0;
+
+constexpr char kChartStyle[] =
+    "set tics out nomirror\nset border 3 lc rgb '#555555'\nset grid lt 1 lw 0.6 lc rgb '#e3e3e3'\n";
+
+/// One figure of every scan, for each method, along the way.
+struct WayChart {
+  std::string name;
+  std::string title;
+  std::string axis;
+  std::vector<std::vector<double>> values;  ///< a series a method
+  std::vector<std::string> notes;           ///< a word on each method
+  double limit = std::nan("");              ///< a line across; NaN for none
+  bool may_be_logarithmic = true;
+  std::string caption;
+};
+
+std::string fixed(double value, int digits) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
+}
+
+/// 1, 2 or 5 times a power of ten, such that about three steps fill the range.
+double stepFor(double range) {
+  const double power = std::pow(10.0, std::floor(std::log10(range / 3.0)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= range / 3.0) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+/// The range of the values and whether their axis is logarithmic: where few are much greater than the rest.
+struct ValueAxis {
+  bool logarithmic = false;
+  double low = 0.0, high = 1.0;
+
+  ValueAxis(const WayChart& chart) {
+    std::vector<double> all;
+    for (const std::vector<double>& series : chart.values) all.insert(all.end(), series.begin(), series.end());
+    high = *std::max_element(all.begin(), all.end());
+    if (std::isfinite(chart.limit)) high = std::max(high, chart.limit);
+    logarithmic = chart.may_be_logarithmic && high > 20.0 * median(all) && median(all) > 0.0;
+    if (logarithmic) low = std::max(percentile(all, 1.0), high * 1e-5);
+    high = high > 0.0 ? high * (logarithmic ? 1.5 : 1.08) : 1.0;
+  }
+};
+
+std::string commandsOf(const ValueAxis& axis) {
+  std::ostringstream text;
+  text << "set yrange [" << axis.low << ':' << axis.high << "]\n";
+  if (axis.logarithmic) {
+    text << "set logscale y\nset ytics 10\n";
+  } else {
+    text << "set ytics " << stepFor(axis.high) << '\n';
+  }
+  return text.str();
+}
+
+/// Panels below each other, one a method: its values in its colour, those of the others in grey behind them.
+GnuplotPicture wayPicture(const BenchmarkRun& run, const WayChart& chart) {
+  const std::size_t count = run.cells.size();
+  const std::vector<double> distances_m = distancesDriven(run);
+  const ValueAxis axis(chart);
+  GnuplotPicture picture;
+  picture.name = chart.name;
+  picture.width_px = kWidth_px;
+  picture.height_px = kTitle_px + kAxis_px + kPanel_px * static_cast<int>(count);
+  std::ostringstream draw;
+  draw << kChartStyle << commandsOf(axis) << "set xrange [0:" << std::max(distances_m.back(), 1e-3) << "]\n"
+       << "unset key\nset format x ''\n"
+       << "set multiplot layout " << count << ",1 title " << gnuplotQuoted(chart.title) << " margins 0.085,0.83,"
+       << static_cast<double>(kAxis_px) / picture.height_px << ','
+       << 1.0 - static_cast<double>(kTitle_px) / picture.height_px << " spacing 0," << 12.0 / picture.height_px << '\n';
+  const double skipped_m = distanceSkipped(run);
+  if (skipped_m > 0.0) {
+    draw << "set object 1 rectangle from 0,graph 0 to " << skipped_m
+         << ",graph 1 behind fillstyle solid 1 noborder fillcolor rgb '#f0f0f0'\n";
+  }
+  if (std::isfinite(chart.limit)) {
+    draw << "set arrow 1 from graph 0,first " << chart.limit << " to graph 1,first " << chart.limit
+         << " nohead dashtype 2 lw 1.2 lc rgb '#000000'\n";
+  }
+  for (std::size_t m = 0; m < count; ++m) {
+    const BenchmarkCell& cell = run.cells[m];
+    std::vector<double> rejected;
+    for (std::size_t i = 0; i < chart.values[m].size(); ++i) {
+      rejected.push_back(cell.run.results[i].accepted() ? std::nan("") : std::max(chart.values[m][i], axis.low));
+    }
+    std::vector<double> shown = chart.values[m];
+    for (double& value : shown) value = std::max(value, axis.low);
+    picture.data += gnuplotData("$method" + std::to_string(m), {distances_m, shown, rejected});
+
+    if (m == 0) draw << "set label 1 " << gnuplotQuoted(chart.axis) << " at screen 0.018,0.5 rotate center\n";
+    if (m == 1) draw << "unset label 1\n";
+    if (m + 1 == count) draw << "set format x '%g'\nset xlabel 'distance driven (m)'\n";
+    draw << "set label 2 " << gnuplotQuoted(cell.method) << " at graph 1.015,0.62 left textcolor rgb '"
+         << methodColour(cell.method) << "' font ',12'\nset label 3 " << gnuplotQuoted(chart.notes[m])
+         << " at graph 1.015,0.36 left textcolor rgb '#444444' font ',9'\nplot ";
+    for (std::size_t other = 0; other < count; ++other) {
+      if (other != m) draw << "$method" << other << " using 1:2 with lines lw 1 lc rgb '#cfcfcf', ";
+    }
+    draw << "$method" << m << " using 1:2 with linespoints pt 7 ps 0.25 lw 1.8 lc rgb '" << methodColour(cell.method)
+         << "', $method" << m << " using 1:3 with points pt 2 ps 1 lw 1.4 lc rgb '#000000'\n";
+  }
+  draw << "unset multiplot\n";
+  picture.commands = draw.str();
+  std::string caption = chart.caption +
+                        " In each panel one method has its colour and the others are grey; crosses are "
+                        "scans that it rejected.";
+  if (axis.logarithmic) caption += " The axis is logarithmic.";
+  if (skipped_m > 0.0) caption += " The shaded start is left out of the errors of the tables.";
+  picture.caption = caption;
+  return picture;
+}
+
+GnuplotPicture timePicture(const BenchmarkRun& run) {
+  GnuplotPicture picture;
+  picture.name = "run_time";
+  picture.width_px = kWidth_px;
+  picture.height_px = 430;
+  double least_ms = kScanPeriod_ms, most_ms = kScanPeriod_ms;
+  std::ostringstream plots;
+  for (std::size_t m = 0; m < run.cells.size(); ++m) {
+    const BenchmarkCell& cell = run.cells[m];
+    std::vector<double> times_ms;
+    for (const LocalizationResult& result : cell.run.results) times_ms.push_back(result.times.total_ms);
+    std::sort(times_ms.begin(), times_ms.end());
+    least_ms = std::min(least_ms, times_ms.front());
+    most_ms = std::max(most_ms, times_ms.back());
+    std::vector<double> shares{0.0};
+    for (std::size_t i = 0; i < times_ms.size(); ++i) {
+      shares.push_back(100.0 * static_cast<double>(i + 1) / static_cast<double>(times_ms.size()));
+    }
+    times_ms.insert(times_ms.begin(), times_ms.front());
+    const std::string block = "$method" + std::to_string(m);
+    picture.data += gnuplotData(block, {times_ms, shares});
+    plots << (m == 0 ? "plot " : ", ") << block << " with steps lw 2.2 dashtype " << m + 1 << " lc rgb '"
+          << methodColour(cell.method) << "' title " << gnuplotQuoted(cell.method);
+  }
+  const bool logarithmic = most_ms > 8.0 * least_ms;
+  std::ostringstream draw;
+  draw << kChartStyle << (logarithmic ? "set logscale x\n" : "") << "set xrange ["
+       << (logarithmic ? least_ms / 1.2 : 0.0) << ':' << most_ms * 1.1 << "]\nset yrange [0:103]\nset ytics 25\n"
+       << "set lmargin at screen 0.085\nset rmargin at screen 0.78\n"
+       << "set key at screen 0.80,0.86 left top Left reverse samplen 3 spacing 1.3\n"
+       << "set xlabel 'time from the scan in memory to the pose (ms)'\nset ylabel 'scans done by then (%)'\nset title "
+       << gnuplotQuoted(run.sequence + ", " + toString(run.drive) + ": run times") << "\nset arrow 1 from first "
+       << kScanPeriod_ms << ",graph 0 to first " << kScanPeriod_ms
+       << ",graph 1 nohead dashtype 2 lw 1.2 lc rgb '#555555'\nset label 1 '100 ms' at first " << kScanPeriod_ms
+       << ",graph 1.02 center textcolor rgb '#555555' font ',9'\n"
+       << plots.str() << '\n';
+  picture.commands = draw.str();
+  picture.caption =
+      std::string(
+          "Share of the scans that were done within a time. The further left a line, the faster the method; "
+          "the dashed line at 100 ms is one turn of a LiDAR at 10 Hz.") +
+      (logarithmic ? " The axis is logarithmic." : "");
+  return picture;
+}
+
+}  // namespace
+
+std::vector<GnuplotPicture> benchmarkPictures(const BenchmarkRun& run) {
+  const std::string where = run.sequence + ", " + toString(run.drive) + ": ";
+  WayChart position{"position_error",
+                    where + "position error along the way",
+                    "position error (m)",
+                    {},
+                    {},
+                    std::nan(""),
+                    true,
+                    "Distance of each pose from the reference."};
+  WayChart yaw{"yaw_error",
+               where + "yaw error along the way",
+               "yaw error (deg)",
+               {},
+               {},
+               std::nan(""),
+               true,
+               "Difference of each heading from that of the reference."};
+  WayChart likelihood{"likelihood",
+                      where + "likelihood along the way",
+                      "likelihood",
+                      {},
+                      {},
+                      run.min_likelihood,
+                      false,
+                      "How well the scan fits the map at the pose found, in a figure that weights do not change; a "
+                      "method of this project rejects a scan below the dashed line."};
+  for (const BenchmarkCell& cell : run.cells) {
+    const ScanErrors errors = scanErrors(run, cell);
+    position.values.push_back(errors.position_error_m);
+    yaw.values.push_back(errors.yaw_error_deg);
+    std::vector<double>& values = likelihood.values.emplace_back();
+    for (const LocalizationResult& result : cell.run.results) values.push_back(result.likelihoods.unweighted);
+    position.notes.push_back("ATE " + fixed(cell.summary.metrics->ate_rmse_m, 4) + " m");
+    yaw.notes.push_back("mean " + fixed(cell.summary.metrics->yaw_mae_deg, 4) + " deg");
+    likelihood.notes.push_back(std::to_string(cell.summary.rejected) + " of " + std::to_string(cell.summary.scans) +
+                               " rejected");
+  }
+  return {mapPicture(run), wayPicture(run, position), wayPicture(run, yaw), wayPicture(run, likelihood),
+          timePicture(run)};
+}
+
+}  // namespace saw_ndt
