@@ -21,7 +21,7 @@ void checkShare(double value, const char* name) { checkOption(value >= 0.0 && va
 
 void LidarOptions::check() const {
   sensor.check();
-  checkOption(firings_per_turn >= 8 && firings_per_turn <= 65536, "firings_per_turn", firings_per_turn, "8 to 65536");
+  checkOption(firings_per_turn >= 64 && firings_per_turn <= 65536, "firings_per_turn", firings_per_turn, "64 to 65536");
   checkPositive(scan_period_s, "scan_period_s");
   checkPositive(min_range_m, "min_range_m");
   checkOption(max_range_m > min_range_m && std::isfinite(max_range_m), "max_range_m", max_range_m,

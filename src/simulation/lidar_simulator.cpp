@@ -76,7 +76,6 @@ class LidarSimulator::Parts {
   BeamConstants beams_;
   std::vector<Eigen::Vector2d> firing_directions_;  ///< cosine and sine of the azimuth of each firing
   std::vector<RingHits> rings_;
-  std::vector<std::vector<Ray>> rays_;
   std::vector<RingReturns> returns_;
 };
 
@@ -87,7 +86,6 @@ LidarSimulator::Parts::Parts(const Scene& scene, const LidarOptions& lidar_optio
       model_(options, scene.materials),
       beams_(beamConstants(options)),
       rings_(static_cast<std::size_t>(options.sensor.rows())),
-      rays_(rings_.size()),
       returns_(rings_.size()) {
   for (int firing = 0; firing < options.firings_per_turn; ++firing) {
     const double azimuth = 2.0 * kPi * firing / options.firings_per_turn;
@@ -111,47 +109,52 @@ PoseKnots LidarSimulator::Parts::posesDuring(const VehicleMotion& motion, int sc
 void LidarSimulator::Parts::fireRing(const PoseKnots& poses, int scan, int ring, double phase) {
   RandomEngine random =
       seededEngine({options.seed, static_cast<std::uint64_t>(scan), static_cast<std::uint64_t>(ring), kJitter});
-  boost::random::normal_distribution<double> normal;
+  boost::random::normal_distribution<float> normal;
   const std::size_t firings = firing_directions_.size();
   const double step_rad = 2.0 * kPi / static_cast<double>(firings);
+  const auto jitter_rad = static_cast<float>(options.angle_jitter_rad);
+  const auto most_jitter_rad = static_cast<float>(0.49 * step_rad);  // no ray passes its neighbour: azimuths rise
   RingHits& own = rings_[ring];
-  std::vector<Ray>& rays = rays_[ring];
   own.directions.resize(firings);
   own.hits.resize(firings);
+  thread_local std::vector<Ray> rays;  // memory kept between rings
   rays.resize(firings);
   own.firing_offset = std::fmod(beams_.firing_offsets[ring] + phase, 1.0);
   const double offset_rad = own.firing_offset * step_rad;
   const double elevation_rad = radiansFromDegrees(options.sensor.elevations_deg[ring]);
-  const double cos_elevation = std::cos(elevation_rad), sin_elevation = std::sin(elevation_rad);
+  const auto cos_elevation = static_cast<float>(std::cos(elevation_rad));
+  const auto sin_elevation = static_cast<float>(std::sin(elevation_rad));
 
   for (std::size_t firing = 0; firing < firings; ++firing) {
-    double turn_rad = offset_rad, rise_rad = 0.0;
-    if (options.angle_jitter_rad > 0.0) {
-      // No ray passes its neighbour, so that azimuths rise.
-      turn_rad += std::clamp(options.angle_jitter_rad * normal(random), -0.49 * step_rad, 0.49 * step_rad);
-      rise_rad = options.angle_jitter_rad * normal(random);
+    const double even_rad = static_cast<double>(firing) * step_rad + offset_rad;
+    double azimuth_rad = even_rad;
+    float rise_rad = 0.0F;
+    if (jitter_rad > 0.0F) {
+      azimuth_rad += std::clamp(jitter_rad * normal(random), -most_jitter_rad, most_jitter_rad);
+      rise_rad = jitter_rad * normal(random);
     }
-    const double unjittered_rad = static_cast<double>(firing) * step_rad;
-    const double azimuth_rad = std::clamp(unjittered_rad + turn_rad, kSeam_rad, 2.0 * kPi - kSeam_rad);
-    turn_rad = azimuth_rad - unjittered_rad;
-    // Less than half a step: the series is exact to float.
-    const double cos_turn = std::cos(turn_rad), sin_turn = std::sin(turn_rad);
+    azimuth_rad = std::clamp(azimuth_rad, kSeam_rad, 2.0 * kPi - kSeam_rad);
+    // From the firing's table entry: less than one and a half steps, for which the series is exact to float.
+    const double turn_rad = azimuth_rad - static_cast<double>(firing) * step_rad;
+    const double squared = turn_rad * turn_rad;
+    const double cosine = 1.0 - squared * (0.5 - squared * (1.0 / 24.0 - squared / 720.0));
+    const double sine = turn_rad * (1.0 - squared * (1.0 / 6.0 - squared * (1.0 / 120.0 - squared / 5040.0)));
     const Eigen::Vector2d& base = firing_directions_[firing];
-    const double horizontal = cos_elevation - rise_rad * sin_elevation;
-    own.directions[firing] = Eigen::Vector3d(horizontal * (base.x() * cos_turn - base.y() * sin_turn),
-                                             horizontal * (base.y() * cos_turn + base.x() * sin_turn),
-                                             sin_elevation + rise_rad * cos_elevation)
-                                 .cast<float>();
+    const float horizontal = cos_elevation - rise_rad * sin_elevation;
+    own.directions[firing] = {horizontal * static_cast<float>(base.x() * cosine - base.y() * sine),
+                              horizontal * static_cast<float>(base.y() * cosine + base.x() * sine),
+                              sin_elevation + rise_rad * cos_elevation};
     const double time_share = azimuth_rad / (2.0 * kPi) + (azimuth_rad <= kPi ? 0.5 : -0.5);
     rays[firing] = poses.ray(own.directions[firing], static_cast<float>(time_share));
   }
   caster_.cast(rays.data(), firings, static_cast<float>(options.max_range_m), own.hits.data());
 
+  // Normals in the LiDAR's frame, of which one pose a scan is close enough.
+  const Eigen::Matrix3f R_lidar_scene = poses.R_scene_lidar[poses.R_scene_lidar.size() / 2].transpose();
   const bool hidden = !options.own_vehicle.isEmpty();
   for (std::size_t firing = 0; firing < firings; ++firing) {
     RayHit& hit = own.hits[firing];
-    // In the LiDAR's frame, of which one pose a scan is close enough for normals.
-    if (hit.isHit()) hit.normal = poses.R_scene_lidar[poses.R_scene_lidar.size() / 2].transpose() * hit.normal;
+    if (hit.isHit()) hit.normal = R_lidar_scene * hit.normal;
     if (!hidden) continue;
     const float range_m = rangeOfBox(options.own_vehicle, own.directions[firing]);
     if (range_m < hit.range_m) hit = {range_m, -own.directions[firing], model_.ownVehicleMaterial()};
@@ -188,7 +191,12 @@ LidarScan LidarSimulator::Parts::scan(const VehicleMotion& motion, int scan) {
     }
   }
 
+  std::size_t point_count = 0;
+  for (const RingReturns& returns : returns_) point_count += returns.points.size();
   LidarScan result;
+  result.points.reserve(point_count);
+  result.semantic_classes.reserve(point_count);
+  result.rings.reserve(point_count);
   for (std::size_t ring = 0; ring < returns_.size(); ++ring) {
     const RingReturns& returns = returns_[ring];
     result.points.insert(result.points.end(), returns.points.begin(), returns.points.end());

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint16_t kOutlierClass = 1;        // of SemanticKITTI
 constexpr float kGreatestReflectance = 0.99F;     // of KITTI's scans
-constexpr float kReflectanceStep = 0.01F;         // likewise
+constexpr float kReflectanceSteps = 100.0F;       // of which its reflectances are multiples
 constexpr float kDropletReflectance = 0.05F;      // the brightest one
 constexpr float kReflectivityOfReference = 0.1F;  // see LidarOptions::detection_range_m
 
@@ -29,7 +29,7 @@ float aslantShare(double s) {
 
 float reflectance(float brightness) {
   const float limited = std::min(brightness, kGreatestReflectance);
-  return std::round(limited / kReflectanceStep) * kReflectanceStep;
+  return std::round(limited * kReflectanceSteps) / kReflectanceSteps;
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ ReturnModel::ReturnModel(const LidarOptions& options, const std::vector<Material
   if (materials.size() > 65535) {
     throw std::invalid_argument("materials.size() = " + std::to_string(materials.size()) + ": must be at most 65535");
   }
-  materials_.push_back(Material());
+  materials_.push_back({0, 0.0F});
 }
 
 ReturnModel::Echo ReturnModel::echoOf(const RayHit& hit, const Eigen::Vector3f& direction) const {

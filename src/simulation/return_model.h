@@ -35,7 +35,7 @@ class ReturnModel {
  public:
   ReturnModel(const LidarOptions& options, const std::vector<Material>& materials);
 
-  /// Stands for the vehicle itself in RayHit::material.
+  /// Stands for the vehicle itself in RayHit::material: of it nothing comes back.
   std::uint16_t ownVehicleMaterial() const { return static_cast<std::uint16_t>(materials_.size() - 1); }
 
   /// The returns of ring number `ring` of a scan; the rings above and below it are looked at for steps in range.

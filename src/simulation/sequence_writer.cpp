@@ -2,6 +2,7 @@
 
 #include <future>
 #include <iomanip>
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>

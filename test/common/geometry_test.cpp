@@ -23,6 +23,22 @@ TEST(Geometry, XyzRpyRoundTrips) {
   }
 }
 
+TEST(Geometry, RotationVectorIsTheInverseOfItsRotation) {
+  for (const double angle : {0.0, 1e-9, 1e-3, 1.0, 3.1}) {
+    const Eigen::Vector3d rotation_vector = angle * Eigen::Vector3d(0.6, 0.0, -0.8);
+    EXPECT_LT((rotationVector(rotationFromVector(rotation_vector)) - rotation_vector).norm(), 1e-12);
+  }
+}
+
+TEST(Geometry, MeanRotationIsTheMeanOfTheRotationsOnTheWay) {
+  for (const double angle : {1e-6, 0.5, 2.0}) {
+    const Eigen::Vector3d rotation_vector = angle * Eigen::Vector3d(0.6, 0.0, -0.8);
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < 1000; ++i) sum += rotationFromVector((i + 0.5) / 1000.0 * rotation_vector);
+    EXPECT_LT((meanRotation(rotation_vector) - sum / 1000.0).norm(), 1e-6);  // of the midpoint rule: angle^2 / 24e6
+  }
+}
+
 TEST(Geometry, RotationAngleIsExactForSmallAngles) {
   for (const double angle : {1e-9, 1e-6, 1e-3, 1.0, 3.0}) {
     const Eigen::Vector3d rotation_vector = angle * Eigen::Vector3d(0.6, 0.0, 0.8);

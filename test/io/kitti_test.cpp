@@ -74,6 +74,46 @@ TEST(KittiLabels, AreTheLowBits) {
   expectThrows<Error>([&] { readSemanticKittiLabels(folder.write("b.label", "12345")); }, {"b.label", "offset 4"});
 }
 
+TEST(KittiScan, IsReadAsItWasWritten) {
+  const TemporaryFolder folder;
+  pcl::PointCloud<pcl::PointXYZI> scan;
+  for (int i = 0; i < 3; ++i) {
+    pcl::PointXYZI point;
+    point.x = 1.0F + static_cast<float>(i);
+    point.y = -0.1F;
+    point.z = 1e-7F;
+    point.intensity = 0.99F;
+    scan.push_back(point);
+  }
+  writeKittiScan(folder.path() / "a.bin", scan);
+  EXPECT_EQ(std::filesystem::file_size(folder.path() / "a.bin"), 48U);
+  const auto read = readKittiScan(folder.path() / "a.bin");
+  ASSERT_EQ(read.size(), scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    EXPECT_EQ(read[i].getVector3fMap(), scan[i].getVector3fMap());
+    EXPECT_EQ(read[i].intensity, scan[i].intensity);
+  }
+  expectThrows<Error>([&] { writeKittiScan(folder.path() / "none" / "a.bin", scan); }, {"none/a.bin"});
+}
+
+TEST(KittiLabels, AreReadAsTheyWereWritten) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint16_t> classes = {0, 40, 259, 65535};
+  writeSemanticKittiLabels(folder.path() / "a.label", classes);
+  EXPECT_EQ(std::filesystem::file_size(folder.path() / "a.label"), 16U);
+  EXPECT_EQ(readSemanticKittiLabels(folder.path() / "a.label"), classes);
+}
+
+TEST(KittiCalibration, IsReadAsItWasWritten) {
+  const TemporaryFolder folder;
+  Vector6d xyz_rpy;
+  xyz_rpy << 0.1, -0.2, 0.3, -1.5, 0.01, -1.6;
+  const Eigen::Isometry3d T_camera_lidar = transformFromXyzRpy(xyz_rpy);
+  writeKittiCalibration(folder.path() / "calib.txt", T_camera_lidar);
+  const Eigen::Isometry3d read = readKittiCalibration(folder.path() / "calib.txt");
+  EXPECT_LT((read.matrix() - T_camera_lidar.matrix()).norm(), 1e-11);
+}
+
 TEST_F(KittiSequenceTest, ReadsTheLayout) {
   for (const auto& spelling : {folder, folder / "", folder / "."}) {
     const KittiSequence sequence(spelling);

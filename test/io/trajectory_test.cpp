@@ -113,5 +113,14 @@ TEST(Trajectory, CameraAndLidarPosesAreInverse) {
   }
 }
 
+TEST(Stamps, AreReadAsTheyWereWritten) {
+  const TemporaryFolder folder;
+  const std::vector<double> stamps_s = {0.0, 0.1, 1234.567891234};
+  writeStamps(folder.path() / "times.txt", stamps_s);
+  const std::vector<double> read_s = readStamps(folder.path() / "times.txt");
+  ASSERT_EQ(read_s.size(), stamps_s.size());
+  for (std::size_t i = 0; i < read_s.size(); ++i) EXPECT_NEAR(read_s[i], stamps_s[i], 1e-9);
+}
+
 }  // namespace
 }  // namespace saw_ndt
