@@ -130,48 +130,67 @@ GnuplotPicture wayPicture(const BenchmarkRun& run, const WayChart& chart) {
   return picture;
 }
 
+/// A row a method: a dot a scan, a box from the 25th to the 75th percentile with the median in it, whiskers from the
+/// 5th to the 95th.
 GnuplotPicture timePicture(const BenchmarkRun& run) {
+  constexpr int kRow_px = 62;
+  const std::size_t count = run.cells.size();
   GnuplotPicture picture;
   picture.name = "run_time";
   picture.width_px = kWidth_px;
-  picture.height_px = 430;
+  picture.height_px = kTitle_px + 20 + kAxis_px + kRow_px * static_cast<int>(count);
   double least_ms = kScanPeriod_ms, most_ms = kScanPeriod_ms;
-  std::ostringstream plots;
-  for (std::size_t m = 0; m < run.cells.size(); ++m) {
+  std::ostringstream draw, plots;
+  draw << std::setprecision(9) << kChartStyle;
+  for (std::size_t m = 0; m < count; ++m) {
     const BenchmarkCell& cell = run.cells[m];
-    std::vector<double> times_ms;
-    for (const LocalizationResult& result : cell.run.results) times_ms.push_back(result.times.total_ms);
-    std::sort(times_ms.begin(), times_ms.end());
-    least_ms = std::min(least_ms, times_ms.front());
-    most_ms = std::max(most_ms, times_ms.back());
-    std::vector<double> shares{0.0};
-    for (std::size_t i = 0; i < times_ms.size(); ++i) {
-      shares.push_back(100.0 * static_cast<double>(i + 1) / static_cast<double>(times_ms.size()));
+    const double y = static_cast<double>(count - m);
+    const std::string colour = "lc rgb '" + methodColour(cell.method) + "'";
+    std::vector<double> times_ms, heights;
+    for (const LocalizationResult& result : cell.run.results) {
+      times_ms.push_back(result.times.total_ms);
+      heights.push_back(y + 0.045 * (static_cast<double>(heights.size() * 7 % 11) - 5.0));
     }
-    times_ms.insert(times_ms.begin(), times_ms.front());
+    least_ms = std::min(least_ms, percentile(times_ms, 0.0));
+    most_ms = std::max(most_ms, percentile(times_ms, 100.0));
     const std::string block = "$method" + std::to_string(m);
-    picture.data += gnuplotData(block, {times_ms, shares});
-    plots << (m == 0 ? "plot " : ", ") << block << " with steps lw 2.2 dashtype " << m + 1 << " lc rgb '"
-          << methodColour(cell.method) << "' title " << gnuplotQuoted(cell.method);
+    picture.data += gnuplotData(block, {times_ms, heights});
+    plots << (m == 0 ? "plot " : ", ") << block << " with points pt 7 ps 0.45 " << colour;
+    const auto line = [&](double from_percent, double from_y, double to_percent, double to_y, double width) {
+      draw << "set arrow from " << percentile(times_ms, from_percent) << ',' << from_y << " to "
+           << percentile(times_ms, to_percent) << ',' << to_y << " nohead front lw " << width << " lc rgb '#000000'\n";
+    };
+    draw << "set object rectangle from " << percentile(times_ms, 25) << ',' << y - 0.33 << " to "
+         << percentile(times_ms, 75) << ',' << y + 0.33 << " front fillstyle empty border lc rgb '#000000' lw 1.2\n";
+    line(5, y, 25, y, 1.2);
+    line(75, y, 95, y, 1.2);
+    line(5, y - 0.15, 5, y + 0.15, 1.2);
+    line(95, y - 0.15, 95, y + 0.15, 1.2);
+    line(50, y - 0.33, 50, y + 0.33, 3.0);
+    draw << "set label " << gnuplotQuoted(cell.method) << " at graph -0.012,first " << y << " right textcolor rgb '"
+         << methodColour(cell.method) << "' font ',12'\nset label "
+         << gnuplotQuoted("mean " + fixed(cell.summary.total_ms.mean, 1) + ", P95 " +
+                          fixed(cell.summary.total_ms.p95, 1) + " ms")
+         << " at graph 1.015,first " << y << " left textcolor rgb '#444444' font ',9'\n";
   }
-  const bool logarithmic = most_ms > 8.0 * least_ms;
-  std::ostringstream draw;
-  draw << kChartStyle << (logarithmic ? "set logscale x\n" : "") << "set xrange ["
-       << (logarithmic ? least_ms / 1.2 : 0.0) << ':' << most_ms * 1.1 << "]\nset yrange [0:103]\nset ytics 25\n"
-       << "set lmargin at screen 0.085\nset rmargin at screen 0.78\n"
-       << "set key at screen 0.80,0.86 left top Left reverse samplen 3 spacing 1.3\n"
-       << "set xlabel 'time from the scan in memory to the pose (ms)'\nset ylabel 'scans done by then (%)'\nset title "
-       << gnuplotQuoted(run.sequence + ", " + toString(run.drive) + ": run times") << "\nset arrow 1 from first "
-       << kScanPeriod_ms << ",graph 0 to first " << kScanPeriod_ms
-       << ",graph 1 nohead dashtype 2 lw 1.2 lc rgb '#555555'\nset label 1 '100 ms' at first " << kScanPeriod_ms
-       << ",graph 1.02 center textcolor rgb '#555555' font ',9'\n"
+  const bool logarithmic = least_ms > 0.0 && most_ms > 8.0 * least_ms;
+  draw << (logarithmic ? "set logscale x\nset xtics (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000)\n"
+                       : "")
+       << "set xrange [" << (logarithmic ? least_ms / 1.2 : 0.0) << ':' << most_ms * (logarithmic ? 1.2 : 1.05)
+       << "]\nset yrange [0.45:" << static_cast<double>(count) + 0.55
+       << "]\nunset ytics\nset border 1\nunset key\nset lmargin at screen 0.16\nset rmargin at screen 0.81\n"
+       << "set xlabel 'time from the scan in memory to the pose (ms)'\nset title "
+       << gnuplotQuoted(run.sequence + ", " + toString(run.drive) + ": run times") << " offset 0,0.8\n"
+       << "set arrow from first " << kScanPeriod_ms << ",graph 0 to first " << kScanPeriod_ms
+       << ",graph 1 nohead dashtype 2 lw 1.2 lc rgb '#555555'\nset label '100 ms' at first " << kScanPeriod_ms
+       << ",graph 1.035 center textcolor rgb '#555555' font ',9'\n"
        << plots.str() << '\n';
   picture.commands = draw.str();
-  picture.caption =
-      std::string(
-          "Share of the scans that were done within a time. The further left a line, the faster the method; "
-          "the dashed line at 100 ms is one turn of a LiDAR at 10 Hz.") +
-      (logarithmic ? " The axis is logarithmic." : "");
+  picture.caption = std::string(
+                        "A dot a scan; the box holds the middle half of them with the median in it, its lines end "
+                        "at the 5th and 95th percentile. The dashed line at 100 ms is one turn of a LiDAR at "
+                        "10 Hz.") +
+                    (logarithmic ? " The axis is logarithmic." : "");
   return picture;
 }
 

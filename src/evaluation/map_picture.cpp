@@ -11,7 +11,8 @@
 namespace saw_ndt {
 namespace {
 
-constexpr double kMargin_m = 30.0;  // of the map shown around the drive
+constexpr double kMargin_m = 30.0;    // of the map shown around the drive
+constexpr double kLineStep_px = 1.7;  // between the widths of lines that may lie on each other
 constexpr double kMaxWidth_px = 920.0, kMaxHeight_px = 900.0, kMinHeight_px = 330.0;
 constexpr double kLeft_px = 75.0, kLegend_px = 215.0, kTop_px = 45.0, kBottom_px = 60.0;
 constexpr double kPointSize_px = 7.0;  // of gnuplot's point size 1
@@ -117,14 +118,14 @@ GnuplotPicture mapPicture(const BenchmarkRun& run) {
        << "NaN with points pt 7 ps 1 lc rgb '#e6d9b8' title 'ground', "
        << "NaN with points pt 7 ps 1 lc rgb '#a9b2bd' title 'not ground', ";
   // Methods that agree lie on each other: each line is thinner than the one below it, so that all can be seen.
-  double line_width = 2.0 * static_cast<double>(run.cells.size()) + 2.0;
+  double line_width = kLineStep_px * static_cast<double>(run.cells.size() + 1);
   draw << "$reference with lines lw " << line_width << " lc rgb '#000000' title 'reference', ";
   for (std::size_t m = 0; m < run.cells.size(); ++m) {
     const std::vector<LocalizationResult>& results = run.cells[m].run.results;
     const std::string block = "$method" + std::to_string(m);
     picture.data += gnuplotData(
         block, positions(results.size(), [&](std::size_t i) { return results[i].T_map_base.translation(); }));
-    line_width -= 2.0;
+    line_width -= kLineStep_px;
     draw << block << " with lines lw " << line_width << " lc rgb '" << methodColour(run.cells[m].method) << "' title "
          << gnuplotQuoted(run.cells[m].method) << ", ";
   }
