@@ -13,11 +13,14 @@
 namespace saw_ndt {
 namespace {
 
-constexpr int kWidth_px = 1000, kPanel_px = 105, kTitle_px = 45, kAxis_px = 62;
+constexpr int kWidth_px = 1000, kPanel_px = 112, kTitle_px = 45, kAxis_px = 62;
 constexpr double kScanPeriod_ms = 100.0;
 
 constexpr char kChartStyle[] =
     "set tics out nomirror\nset border 3 lc rgb '#555555'\nset grid lt 1 lw 0.6 lc rgb '#e3e3e3'\n";
+
+constexpr double kHeadroom = 0.12;       // share of a panel above its data, for the marks of rejected scans
+constexpr std::size_t kManyScans = 250;  // from here on dots would hide more than they show
 
 /// One figure of every scan, for each method, along the way.
 struct WayChart {
@@ -58,8 +61,12 @@ struct ValueAxis {
     if (std::isfinite(chart.limit)) high = std::max(high, chart.limit);
     logarithmic = chart.may_be_logarithmic && high > 20.0 * median(all) && median(all) > 0.0;
     if (logarithmic) low = std::max(percentile(all, 1.0), high * 1e-5);
-    high = high > 0.0 ? high * (logarithmic ? 1.5 : 1.08) : 1.0;
+    high = high > 0.0 ? high : 1.0;
+    high = at(1.0 + kHeadroom);
   }
+
+  /// The value at a share of the axis' length.
+  double at(double share) const { return logarithmic ? low * std::pow(high / low, share) : low + share * (high - low); }
 };
 
 std::string commandsOf(const ValueAxis& axis) {
@@ -87,7 +94,7 @@ GnuplotPicture wayPicture(const BenchmarkRun& run, const WayChart& chart) {
        << "unset key\nset format x ''\n"
        << "set multiplot layout " << count << ",1 title " << gnuplotQuoted(chart.title) << " margins 0.085,0.83,"
        << static_cast<double>(kAxis_px) / picture.height_px << ','
-       << 1.0 - static_cast<double>(kTitle_px) / picture.height_px << " spacing 0," << 12.0 / picture.height_px << '\n';
+       << 1.0 - static_cast<double>(kTitle_px) / picture.height_px << " spacing 0," << 20.0 / picture.height_px << '\n';
   const double skipped_m = distanceSkipped(run);
   if (skipped_m > 0.0) {
     draw << "set object 1 rectangle from 0,graph 0 to " << skipped_m
@@ -97,15 +104,16 @@ GnuplotPicture wayPicture(const BenchmarkRun& run, const WayChart& chart) {
     draw << "set arrow 1 from graph 0,first " << chart.limit << " to graph 1,first " << chart.limit
          << " nohead dashtype 2 lw 1.2 lc rgb '#000000'\n";
   }
+  const double mark_y = axis.at(0.93);
+  const std::string line =
+      distances_m.size() < kManyScans ? "with linespoints pt 7 ps 0.25 lw 1.8" : "with lines lw 1.1";
   for (std::size_t m = 0; m < count; ++m) {
     const BenchmarkCell& cell = run.cells[m];
-    std::vector<double> rejected;
-    for (std::size_t i = 0; i < chart.values[m].size(); ++i) {
-      rejected.push_back(cell.run.results[i].accepted() ? std::nan("") : std::max(chart.values[m][i], axis.low));
-    }
+    std::vector<double> mark;
+    for (const LocalizationResult& result : cell.run.results) mark.push_back(result.accepted() ? std::nan("") : mark_y);
     std::vector<double> shown = chart.values[m];
     for (double& value : shown) value = std::max(value, axis.low);
-    picture.data += gnuplotData("$method" + std::to_string(m), {distances_m, shown, rejected});
+    picture.data += gnuplotData("$method" + std::to_string(m), {distances_m, shown, mark});
 
     if (m == 0) draw << "set label 1 " << gnuplotQuoted(chart.axis) << " at screen 0.018,0.5 rotate center\n";
     if (m == 1) draw << "unset label 1\n";
@@ -116,13 +124,13 @@ GnuplotPicture wayPicture(const BenchmarkRun& run, const WayChart& chart) {
     for (std::size_t other = 0; other < count; ++other) {
       if (other != m) draw << "$method" << other << " using 1:2 with lines lw 1 lc rgb '#cfcfcf', ";
     }
-    draw << "$method" << m << " using 1:2 with linespoints pt 7 ps 0.25 lw 1.8 lc rgb '" << methodColour(cell.method)
-         << "', $method" << m << " using 1:3 with points pt 2 ps 1 lw 1.4 lc rgb '#000000'\n";
+    draw << "$method" << m << " using 1:2 " << line << " lc rgb '" << methodColour(cell.method) << "', $method" << m
+         << " using 1:3:(0):(" << axis.high - mark_y << ") with vectors nohead lw 1.2 lc rgb '#000000'\n";
   }
   draw << "unset multiplot\n";
   picture.commands = draw.str();
   std::string caption = chart.caption +
-                        " In each panel one method has its colour and the others are grey; crosses are "
+                        " In each panel one method has its colour and the others are grey; black ticks at its top are "
                         "scans that it rejected.";
   if (axis.logarithmic) caption += " The axis is logarithmic.";
   if (skipped_m > 0.0) caption += " The shaded start is left out of the errors of the tables.";
@@ -155,7 +163,8 @@ GnuplotPicture timePicture(const BenchmarkRun& run) {
     most_ms = std::max(most_ms, percentile(times_ms, 100.0));
     const std::string block = "$method" + std::to_string(m);
     picture.data += gnuplotData(block, {times_ms, heights});
-    plots << (m == 0 ? "plot " : ", ") << block << " with points pt 7 ps 0.45 " << colour;
+    plots << (m == 0 ? "plot " : ", ") << block << " with points pt 7 ps "
+          << (times_ms.size() < kManyScans ? 0.45 : 0.25) << ' ' << colour;
     const auto line = [&](double from_percent, double from_y, double to_percent, double to_y, double width) {
       draw << "set arrow from " << percentile(times_ms, from_percent) << ',' << from_y << " to "
            << percentile(times_ms, to_percent) << ',' << to_y << " nohead front lw " << width << " lc rgb '#000000'\n";
