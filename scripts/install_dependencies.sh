@@ -8,6 +8,7 @@ packages=(
   libpcl-dev libeigen3-dev libboost-dev libboost-program-options-dev
   nlohmann-json3-dev libembree-dev gnuplot-nox
   libgtest-dev libbenchmark-dev
+  gnuplot-nox
 )
 
 if ! command -v dpkg-query > /dev/null; then

@@ -102,12 +102,12 @@ std::string contentOf(const fs::path& path) {
 }
 
 std::string embedded(const GnuplotPicture& picture, const fs::path& plots) {
-  const fs::path file = plots / (picture.name + (picture.many_points ? ".png" : ".svg"));
-  const char* type = picture.many_points ? "image/png" : "image/svg+xml";
-  return "<figure><img width=\"" + std::to_string(picture.width_px) + "\" height=\"" +
-         std::to_string(picture.height_px) + "\" alt=\"" + htmlEscaped(picture.caption) + "\" src=\"data:" + type +
-         ";base64," + base64(contentOf(file)) + "\">\n<figcaption>" + htmlEscaped(picture.caption) +
-         "</figcaption></figure>\n";
+  const std::string caption = htmlEscaped(picture.caption);
+  std::ostringstream html;
+  html << "<figure><img width=\"" << picture.width_px << "\" height=\"" << picture.height_px << "\" alt=\"" << caption
+       << "\" src=\"data:image/png;base64," << base64(contentOf(plots / (picture.name + ".png"))) << "\">\n<figcaption>"
+       << caption << "</figcaption></figure>\n";
+  return html.str();
 }
 
 /// The section of a run. What gnuplot has to say goes into `failure`.

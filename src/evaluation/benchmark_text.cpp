@@ -87,6 +87,7 @@ TextTable resultTable(const BenchmarkTable& table) {
        "Accepted (%)", "Likelihood", "Nearest-voxel likelihood", "Source points", "Segment / filter / align (ms)"},
       {}};
   for (const BenchmarkRow& row : table.rows) text.rows.push_back(resultCells(row));
+  if (table.sequences.size() < 2) return text;
   for (const BenchmarkRow& row : table.macro_averages) text.rows.push_back(resultCells(row));
   return text;
 }
@@ -94,10 +95,12 @@ TextTable resultTable(const BenchmarkTable& table) {
 TextTable ratioTable(const BenchmarkTable& table) {
   TextTable text{titled("ATE over that of classical", table.drive), {"Method"}, {}};
   for (const std::string& sequence : table.sequences) text.header.push_back(sequence);
-  text.header.emplace_back("macro average");
+  const bool with_average = table.sequences.size() > 1;
+  if (with_average) text.header.emplace_back("macro average");
   for (const std::string& method : table.methods) {
-    const std::vector<double> ratios = table.ateOverClassical(method);
+    std::vector<double> ratios = table.ateOverClassical(method);
     if (ratios.empty()) continue;
+    if (!with_average) ratios.pop_back();
     text.rows.push_back({method});
     for (const double ratio : ratios) text.rows.back().push_back(std::isfinite(ratio) ? fixed(ratio, 3) : "");
   }

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kFont[] = "DejaVu Sans,11";
+constexpr double kPngScale = 1.5;  // sharp on dense displays
 
 std::string inSingleQuotes(const std::string& text, const std::string& quote_within) {
   std::string result = "'";
@@ -24,10 +25,17 @@ std::string inSingleQuotes(const std::string& text, const std::string& quote_wit
   return result + "'";
 }
 
-std::string drawn(const GnuplotPicture& picture, const std::string& terminal, const fs::path& file) {
+std::string pngTerminal() {
+  std::ostringstream text;
+  text << "pngcairo fontscale " << kPngScale << " linewidth " << kPngScale << " pointscale " << kPngScale;
+  return text.str();
+}
+
+/// @param scale  of the picture's size
+std::string drawn(const GnuplotPicture& picture, const std::string& terminal, double scale, const fs::path& file) {
   std::ostringstream script;
-  script << "reset\nset terminal " << terminal << " noenhanced background rgb 'white' size " << picture.width_px << ','
-         << picture.height_px << " font " << gnuplotQuoted(kFont) << "\nset encoding utf8\nset output "
+  script << "reset\nset terminal " << terminal << " noenhanced background rgb 'white' size " << scale * picture.width_px
+         << ',' << scale * picture.height_px << " font " << gnuplotQuoted(kFont) << "\nset encoding utf8\nset output "
          << gnuplotQuoted(file.string()) << "\n"
          << picture.commands << "\nunset output\n";
   return script.str();
@@ -59,8 +67,8 @@ void drawPicture(const GnuplotPicture& picture, const fs::path& folder) {
   const Scratch scratch{{script_file, message_file}};
   // A file rather than a pipe, which would end this process where gnuplot gives up early.
   AtomicOutput script(script_file);
-  script.stream() << picture.data << drawn(picture, "pngcairo", folder / (picture.name + ".png"));
-  if (!picture.many_points) script.stream() << drawn(picture, "svg", folder / (picture.name + ".svg"));
+  script.stream() << picture.data << drawn(picture, pngTerminal(), kPngScale, folder / (picture.name + ".png"));
+  if (!picture.many_points) script.stream() << drawn(picture, "svg", 1.0, folder / (picture.name + ".svg"));
   script.commit();
   const std::string command = "gnuplot " + inSingleQuotes(script_file.string(), "'\\''") + " > /dev/null 2> " +
                               inSingleQuotes(message_file.string(), "'\\''");

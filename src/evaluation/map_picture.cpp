@@ -12,8 +12,10 @@ namespace saw_ndt {
 namespace {
 
 constexpr double kMargin_m = 30.0;  // of the map shown around the drive
+constexpr double kMarkDistance_px = 12.0;
+constexpr double kLineStep_px = 1.7;  // between the widths of lines that may lie on each other
 constexpr double kMaxWidth_px = 920.0, kMaxHeight_px = 900.0, kMinHeight_px = 330.0;
-constexpr double kLeft_px = 75.0, kLegend_px = 215.0, kTop_px = 45.0, kBottom_px = 60.0;
+constexpr double kLeft_px = 100.0, kLegend_px = 215.0, kTop_px = 45.0, kBottom_px = 60.0;
 constexpr double kPointSize_px = 7.0;  // of gnuplot's point size 1
 
 struct Window {
@@ -57,14 +59,19 @@ Columns positions(std::size_t count, PositionOf position_of) {
   return columns;
 }
 
-/// The poses at which the scans of any method were rejected.
-Columns rejectedPositions(const BenchmarkRun& run) {
+/// The poses at which the scans of any method were rejected, but for those too close to the one before to be told from
+/// it.
+Columns rejectedPositions(const BenchmarkRun& run, double least_distance_m) {
   Columns columns(2);
   for (const BenchmarkCell& cell : run.cells) {
+    const LocalizationResult* shown = nullptr;
     for (const LocalizationResult& result : cell.run.results) {
       if (result.accepted()) continue;
-      columns[0].push_back(result.T_map_base.translation().x());
-      columns[1].push_back(result.T_map_base.translation().y());
+      const Eigen::Vector3d position = result.T_map_base.translation();
+      if (shown != nullptr && (position - shown->T_map_base.translation()).norm() < least_distance_m) continue;
+      columns[0].push_back(position.x());
+      columns[1].push_back(position.y());
+      shown = &result;
     }
   }
   return columns;
@@ -95,7 +102,7 @@ GnuplotPicture mapPicture(const BenchmarkRun& run) {
   const auto screen_y = [&](double px) { return px / picture.height_px; };
   picture.data = gnuplotData("$ground", orNothing(voxelsOf(run, window, true))) +
                  gnuplotData("$structure", orNothing(voxelsOf(run, window, false))) +
-                 gnuplotData("$rejected", orNothing(rejectedPositions(run))) +
+                 gnuplotData("$rejected", orNothing(rejectedPositions(run, kMarkDistance_px / scale_px))) +
                  gnuplotData("$reference", positions(run.T_map_base.size(),
                                                      [&](std::size_t i) { return run.T_map_base[i].translation(); }));
   std::ostringstream draw;
@@ -117,14 +124,14 @@ GnuplotPicture mapPicture(const BenchmarkRun& run) {
        << "NaN with points pt 7 ps 1 lc rgb '#e6d9b8' title 'ground', "
        << "NaN with points pt 7 ps 1 lc rgb '#a9b2bd' title 'not ground', ";
   // Methods that agree lie on each other: each line is thinner than the one below it, so that all can be seen.
-  double line_width = 2.0 * static_cast<double>(run.cells.size()) + 2.0;
+  double line_width = kLineStep_px * static_cast<double>(run.cells.size() + 1);
   draw << "$reference with lines lw " << line_width << " lc rgb '#000000' title 'reference', ";
   for (std::size_t m = 0; m < run.cells.size(); ++m) {
     const std::vector<LocalizationResult>& results = run.cells[m].run.results;
     const std::string block = "$method" + std::to_string(m);
     picture.data += gnuplotData(
         block, positions(results.size(), [&](std::size_t i) { return results[i].T_map_base.translation(); }));
-    line_width -= 2.0;
+    line_width -= kLineStep_px;
     draw << block << " with lines lw " << line_width << " lc rgb '" << methodColour(run.cells[m].method) << "' title "
          << gnuplotQuoted(run.cells[m].method) << ", ";
   }
@@ -133,7 +140,8 @@ GnuplotPicture mapPicture(const BenchmarkRun& run) {
   picture.commands = draw.str();
   picture.caption =
       "The map (the mean of each voxel, from above) with the reference and what each method said. Lines that agree "
-      "lie on each other, the reference widest. Crosses are scans that a method rejected; there it shows the pose "
+      "lie on each other, the reference widest. Crosses are scans that a method rejected (one of many where they are "
+      "dense); there it shows the pose "
       "it had predicted.";
   return picture;
 }

@@ -49,6 +49,32 @@ TEST_F(EvaluateApp, KnownErrors) {
   }
 }
 
+// The absolute pose error of evo (evo_ape tum / kitti, translation part, without alignment) is the distance
+// |t_reference - t_estimate| of poses whose stamps are at most 0.01 s apart. Here 5, 0 and 3 m: mean 8/3, median 3,
+// rmse sqrt((25 + 0 + 9) / 3), max 5, and standard deviation sqrt(34/3 - 64/9) = sqrt(38)/3.
+TEST_F(EvaluateApp, AgreesWithEvosAbsolutePoseError) {
+  const std::string tum_files =
+      file("a.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n4 4 0 0 0 0 0 1\n") +
+      file("b.tum",
+           "0.004 3 4 0 0 0 0 1\n1.009 1 0 0 0 0 0 1\n2.5 9 9 9 0 0 0 1\n2.995 4 2 2 0 0 0 1\n4.02 9 9 9 0 0 0 1\n");
+  const std::string kitti_files =
+      file("a.kitti", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1\n1 0 0 0 0 1 0 0 0 0 1 3\n") +
+      file("b.kitti", "1 0 0 3 0 1 0 4 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1\n1 0 0 2 0 1 0 -2 0 0 1 4\n");
+  for (const std::string& files : {tum_files, kitti_files, kitti_files + calib}) {
+    SCOPED_TRACE(files);
+    const AppResult result = run(files + "-json -skip 0");
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const auto report = nlohmann::json::parse(result.output);
+    const double rmse_m = report.at("ate_rmse_m"), mean_m = report.at("position_mean_m");
+    EXPECT_EQ(report.at("evaluated_scans"), 3);
+    EXPECT_NEAR(rmse_m, 3.366501646120693, 1e-9);
+    EXPECT_NEAR(mean_m, 2.666666666666667, 1e-9);
+    EXPECT_NEAR(std::sqrt(rmse_m * rmse_m - mean_m * mean_m), 2.054804667656325, 1e-9);
+    EXPECT_NEAR(report.at("position_median_m").get<double>(), 3.0, 1e-9);
+    EXPECT_NEAR(report.at("position_max_m").get<double>(), 5.0, 1e-9);
+  }
+}
+
 TEST_F(EvaluateApp, PrintsText) {
   const AppResult result = run(tum_reference + tum_estimate);
   EXPECT_EQ(result.exit_code, 0) << result.errors;

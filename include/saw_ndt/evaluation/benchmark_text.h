@@ -15,7 +15,8 @@ struct TextTable {
   std::vector<std::vector<std::string>> rows;  ///< each as long as the header
 };
 
-/// The table for readers: the paper's columns, then the others; the macro averages last.
+/// The table for readers: the paper's columns, then the others; the macro averages last where there are
+/// several sequences.
 TextTable resultTable(const BenchmarkTable& table);
 /// The absolute trajectory errors over those of classical NDT. Without rows where that is no method of the table.
 TextTable ratioTable(const BenchmarkTable& table);
