@@ -41,7 +41,7 @@ DriveFigures figuresOf(const std::string& folder, const std::string& scans, saw_
 
 std::string text(double value) {
   std::ostringstream out;
-  out << std::fixed << std::setprecision(value < 2.0 ? 3 : value < 100.0 ? 1 : 0) << value;
+  out << std::fixed << std::setprecision(value < 0.1 ? 4 : value < 2.0 ? 3 : value < 100.0 ? 1 : 0) << value;
   return out.str();
 }
 

@@ -1,5 +1,6 @@
 #include "saw_ndt/evaluation/scan_statistics.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/container_hash/hash.hpp>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "saw_ndt/evaluation/segmentation_score.h"
 #include "saw_ndt/evaluation/statistics.h"
+#include "saw_ndt/map/weighted_map_builder.h"
 
 namespace saw_ndt {
 namespace {
@@ -22,6 +24,31 @@ double occupiedVoxels(const ScanView& scan, float edge_m) {
     voxels.emplace(cell(p[0]), cell(p[1]), cell(p[2]));
   }
   return static_cast<double>(voxels.size());
+}
+
+/// Thickness (m) of the flat surfaces of one label, a quantile over its planar voxels of 1 m: what noise and offsets of
+/// the beams make of a plane. 0 where there is none.
+double surfaceThickness(const ScanView& scan, const std::vector<StructuralLabel>& labels, StructuralLabel label,
+                        double percent) {
+  constexpr std::uint64_t kFewestPoints = 50;
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  for (std::size_t i = 0; i < scan.size; ++i) {
+    const float* p = scan.point(i);
+    if (labels[i] == label) cloud.emplace_back(p[0], p[1], p[2]);
+  }
+  WeightedMapBuilder builder(1.0);
+  builder.addCloud(cloud, Eigen::Isometry3d::Identity());
+  VoxelWeighting weighting;
+  weighting.min_eigenvalue_ratio = 1e-6;
+  const WeightedVoxelMap map = builder.build(weighting);
+  std::vector<double> thicknesses_m;
+  for (std::size_t i = 0; i < map.fine().size(); ++i) {
+    const VoxelStatistics voxel = map.fine().voxel(i);
+    if (voxel.structure_class != StructureClass::Planar || voxel.point_count < kFewestPoints) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(voxel.covariance, Eigen::EigenvaluesOnly);
+    thicknesses_m.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[0])));
+  }
+  return thicknesses_m.empty() ? 0.0 : percentile(thicknesses_m, percent);
 }
 
 }  // namespace
@@ -59,6 +86,9 @@ ScanStatistics scanStatistics(const ScanView& scan, const std::vector<std::uint1
   figures.emplace_back("voxels_of_0.2_m", occupiedVoxels(scan, 0.2f));
   figures.emplace_back("ground_label_share", share(StructuralLabel::Ground));
   figures.emplace_back("noise_label_share", share(StructuralLabel::Noise));
+  // Walls are rough and have windows: the lower quartile is more of a plane than the median.
+  figures.emplace_back("ground_thickness_p50_m", surfaceThickness(scan, labels, StructuralLabel::Ground, 50.0));
+  figures.emplace_back("other_thickness_p25_m", surfaceThickness(scan, labels, StructuralLabel::NonGround, 25.0));
   if (!semantic_classes.empty()) {
     double known = 0.0, ground = 0.0;
     for (const std::uint16_t semantic_class : semantic_classes) {

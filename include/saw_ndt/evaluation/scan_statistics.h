@@ -14,8 +14,8 @@ namespace saw_ndt {
 using ScanStatistics = std::vector<std::pair<std::string, double>>;
 
 /// What a scan looks like to the methods of this project: points, quantiles of the range (m), points a ring (means over
-/// eighths of the rings, top first), occupied voxels, shares of the labels that segmentation gives and, with classes,
-/// the share of SemanticKITTI's ground among the points whose class is known.
+/// eighths of the rings, top first), occupied voxels, shares of the labels that segmentation gives, thickness of flat
+/// surfaces (m) and, with classes, the share of SemanticKITTI's ground among the points whose class is known.
 /// @param semantic_classes  one a point, or none
 ScanStatistics scanStatistics(const ScanView& scan, const std::vector<std::uint16_t>& semantic_classes,
                               ScanSegmenter& segmenter);
