@@ -28,7 +28,7 @@ constexpr std::size_t kBytesPerPoint = 4 * sizeof(float);
 constexpr double kFocalLength_px = 720.0;
 constexpr double kPrincipalPointX_px = 620.0;
 constexpr double kPrincipalPointY_px = 188.0;
-constexpr std::array<double, 4> kCameraPlaces_m = {0.0, 0.54, -0.06, 0.48};  // to the right of the left grey one
+constexpr std::array<double, 4> kCameraPlaces_m = {0.0, -0.54, 0.06, -0.48};  // to the left of the left grey one
 
 /// The records of a binary file without a header; Error unless there is at least one and the last one is whole.
 template <typename Value>
@@ -112,7 +112,7 @@ void writeKittiCalibration(const fs::path& path, const Eigen::Isometry3d& T_came
   P << kFocalLength_px, 0.0, kPrincipalPointX_px, 0.0, 0.0, kFocalLength_px, kPrincipalPointY_px, 0.0, 0.0, 0.0, 1.0,
       0.0;
   for (std::size_t camera = 0; camera < kCameraPlaces_m.size(); ++camera) {
-    P(0, 3) = -kFocalLength_px * kCameraPlaces_m[camera];
+    P(0, 3) = kFocalLength_px * kCameraPlaces_m[camera];
     writeMatrix(output.stream(), ("P" + std::to_string(camera)).c_str(), P);
   }
   writeMatrix(output.stream(), "Tr", T_camera_lidar.matrix().topRows<3>());
