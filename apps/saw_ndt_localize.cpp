@@ -20,9 +20,7 @@ constexpr char kDescription[] =
 
 std::shared_ptr<const saw_ndt::WeightedVoxelMap> loadMap(const std::string& file,
                                                          const saw_ndt::LocalizationMethod& method) {
-  saw_ndt::VoxelWeighting weighting;
-  weighting.confidence = method.confidence;
-  auto map = std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(file, weighting));
+  auto map = std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(file, method.voxels));
   if (method.segment && !map->labelled()) {
     throw saw_ndt::Error(file, "",
                          "was built with -classical: it has no labels, which the method " + method.name +

@@ -50,10 +50,8 @@ Method ourMethod(const std::string& name, const saw_ndt::WeightedVoxelMap& map, 
   saw_ndt::LocalizerOptions options;
   options.method = saw_ndt::LocalizationMethod::named(name);
   options.alignment.threads = threads;
-  saw_ndt::VoxelWeighting weighting;
-  weighting.confidence = options.method.confidence;
   auto localizer = std::make_shared<saw_ndt::Localizer>(
-      std::make_shared<const saw_ndt::WeightedVoxelMap>(map.reweighted(weighting)), options);
+      std::make_shared<const saw_ndt::WeightedVoxelMap>(map.reweighted(options.method.voxels)), options);
   return [localizer](const Cloud& scan, const Eigen::Isometry3d& T_start) {
     localizer->setInitialPose(T_start);
     const saw_ndt::LocalizationResult result = localizer->localize(saw_ndt::viewOf(scan), 0.0);

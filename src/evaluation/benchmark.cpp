@@ -1,12 +1,10 @@
 #include "saw_ndt/evaluation/benchmark.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <set>
 #include <sstream>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "saw_ndt/common/error.h"
@@ -17,26 +15,23 @@
 namespace saw_ndt {
 namespace {
 
-/// One map read with the confidences of each method that asks for it; methods of equal ones share it.
+/// One map read in each way that a method asks for; methods that ask for the same share it.
 class MapReadings {
  public:
   explicit MapReadings(WeightedVoxelMap map) : map_(std::move(map)) {}
 
-  std::shared_ptr<const WeightedVoxelMap> with(const ConfidenceOptions& confidence) {
-    auto& reading = readings_[{confidence.noise, confidence.ground, confidence.non_ground}];
-    if (!reading) {
-      VoxelWeighting weighting;
-      weighting.confidence = confidence;
-      reading = std::make_shared<const WeightedVoxelMap>(map_.reweighted(weighting));
+  std::shared_ptr<const WeightedVoxelMap> with(const VoxelWeighting& weighting) {
+    for (const auto& reading : readings_) {
+      if (reading->weighting() == weighting) return reading;
     }
-    return reading;
+    return readings_.emplace_back(std::make_shared<const WeightedVoxelMap>(map_.reweighted(weighting)));
   }
 
   const WeightedVoxelMap& map() const { return map_; }
 
  private:
   WeightedVoxelMap map_;
-  std::map<std::tuple<double, double, double>, std::shared_ptr<const WeightedVoxelMap>> readings_;
+  std::vector<std::shared_ptr<const WeightedVoxelMap>> readings_;
 };
 
 /// A localizer of ours or PCL's, at its initial pose.
@@ -166,7 +161,7 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
   std::vector<ScanLocalizer> localizers;
   for (const std::string& method : options_.methods) {
     const LocalizerOptions options = optionsOf(method, common);
-    const auto map = maps.with(options.method.confidence);
+    const auto map = maps.with(options.method.voxels);
     if (method == kPclNdtMethod) {
       begin(progress, prefix + "giving PCL the points of " + std::to_string(map_scans.size()) + " scans",
             map_scans.size());

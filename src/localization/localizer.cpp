@@ -23,10 +23,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-bool sameConfidences(const ConfidenceOptions& a, const ConfidenceOptions& b) {
-  return a.noise == b.noise && a.ground == b.ground && a.non_ground == b.non_ground;
-}
-
 Matrix6d inverseOrZero(const Matrix6d& information) {
   const Eigen::FullPivLU<Matrix6d> decomposition(information);
   return decomposition.isInvertible() ? Matrix6d(decomposition.inverse()) : Matrix6d(Matrix6d::Zero());
@@ -102,8 +98,8 @@ Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const Localize
       filter_(options.source_voxel_size_m),
       prediction_(options.prediction) {
   if (!map_) throw std::invalid_argument("Localizer: the map is a null pointer");
-  if (!sameConfidences(map_->weighting().confidence, options_.method.confidence)) {
-    throw std::invalid_argument("Localizer: the map was read with other confidences than those of method " +
+  if (!(map_->weighting() == options_.method.voxels)) {
+    throw std::invalid_argument("Localizer: the map was read with another VoxelWeighting than that of method " +
                                 options_.method.name);
   }
   if (options_.method.segment && !map_->labelled()) {
@@ -131,7 +127,7 @@ const SourcePoints& Localizer::makeSource(const ScanView& scan, StageTimes& time
   GroundSampler ground_sampler({method.ground_ratio});
   for (std::size_t i = 0; i < scan.size; ++i) {
     const StructuralLabel label = labels_[i];
-    if (method.confidence.of(label) <= 0.0) continue;
+    if (method.voxels.confidence.of(label) <= 0.0) continue;
     if (label == StructuralLabel::Ground && !ground_sampler.keepsNext()) continue;
     filter_.add(T_base_lidar * Eigen::Map<const Eigen::Vector3f>(scan.point(i)), label);
   }

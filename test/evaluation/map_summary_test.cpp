@@ -48,12 +48,12 @@ TEST(MapSummary, CountsByHand) {
   EXPECT_EQ(summary.box_max_m, Eigen::Vector3d(5.5, 0.5, 2.0));
   EXPECT_EQ(summary.label_points, (std::array<std::uint64_t, 3>{6, 6, 3}));
   EXPECT_EQ(summary.class_voxels, (std::array<std::size_t, 3>{1, 1, 0}));
-  // Plane: (6 * 0.5 + 2 * 1) / 8 = 0.625, times 1.25. Line: 0.75, times 0.75.
-  EXPECT_DOUBLE_EQ(summary.mean_confidence.min, 0.625);
-  EXPECT_DOUBLE_EQ(summary.mean_confidence.max, 0.75);
-  EXPECT_DOUBLE_EQ(summary.mean_confidence.mean, 0.6875);
-  EXPECT_DOUBLE_EQ(summary.weight.min, 0.5625);
-  EXPECT_DOUBLE_EQ(summary.weight.max, 0.78125);
+  // Plane: (6 * 0.65 + 2 * 1) / 8 = 0.7375, times 1.25. Line: 0.85, times 0.75.
+  EXPECT_DOUBLE_EQ(summary.mean_confidence.min, 0.7375);
+  EXPECT_DOUBLE_EQ(summary.mean_confidence.max, 0.85);
+  EXPECT_DOUBLE_EQ(summary.mean_confidence.mean, 0.79375);
+  EXPECT_DOUBLE_EQ(summary.weight.min, 0.6375);
+  EXPECT_DOUBLE_EQ(summary.weight.max, 0.921875);
   EXPECT_DOUBLE_EQ(summary.weight.mean, 0.671875);
 }
 

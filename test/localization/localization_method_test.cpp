@@ -41,9 +41,10 @@ TEST(LocalizationMethod, ThePapersMethodsHaveThePapersValues) {
     EXPECT_EQ(method.ground_ratio, e.ground_ratio);
     EXPECT_EQ(method.mismatch_penalty, 0.1);
     EXPECT_EQ(method.outlier_ratio, 0.55);
-    EXPECT_EQ(method.confidence.noise, e.segment ? 0.0 : 1.0);
-    EXPECT_EQ(method.confidence.ground, e.segment ? 0.5 : 1.0);
-    EXPECT_EQ(method.confidence.non_ground, 1.0);
+    EXPECT_EQ(method.voxels.confidence.noise, e.segment ? 0.0 : 1.0);
+    EXPECT_EQ(method.voxels.confidence.ground, e.segment ? 0.5 : 1.0);
+    EXPECT_EQ(method.voxels.confidence.non_ground, 1.0);
+    EXPECT_EQ(method.voxels.min_eigenvalue_ratio, 0.01);
   }
 }
 
@@ -62,7 +63,7 @@ TEST(LocalizationMethod, ChecksNameTheField) {
   refused("outlier_ratio", &LocalizationMethod::outlier_ratio, 0.0);
   refused("outlier_ratio", &LocalizationMethod::outlier_ratio, 1.0);
   LocalizationMethod method;
-  method.confidence.ground = 2.0;
+  method.voxels.confidence.ground = 2.0;
   expectThrows<std::invalid_argument>([&] { method.check(); }, {"ground", "2"});
 }
 

@@ -47,9 +47,7 @@ class LocalizerTest : public ::testing::Test {
   LocalizerTest() {
     options.method = LocalizationMethod::named("classical");
     options.alignment.threads = 1;
-    VoxelWeighting weighting;
-    weighting.confidence = options.method.confidence;
-    map = std::make_shared<const WeightedVoxelMap>(mapOf(withoutLabels(streetCorner(1)), 1.0, weighting));
+    map = std::make_shared<const WeightedVoxelMap>(mapOf(withoutLabels(streetCorner(1)), 1.0, options.method.voxels));
   }
 
   static Eigen::Isometry3d poseOf(int scan) { return planarPose(0.2 * scan - 0.6, 0.1 * scan, 1.0 * scan); }
@@ -228,8 +226,8 @@ TEST_F(LocalizerTest, RefusesMapsThatDoNotFitTheMethod) {
   const auto labelled = std::make_shared<const WeightedVoxelMap>(mapOf(streetCorner(1)));
   const auto unlabelled = std::make_shared<const WeightedVoxelMap>(mapOf(withoutLabels(streetCorner(1))));
   EXPECT_NO_THROW(Localizer(labelled, LocalizerOptions()));
-  refused(labelled, "weighted-s50", {"confidences", "weighted-s50"});
-  refused(labelled, "classical", {"confidences", "classical"});
+  refused(labelled, "weighted-s50", {"VoxelWeighting", "weighted-s50"});
+  refused(labelled, "classical", {"VoxelWeighting", "classical"});
   refused(unlabelled, "weighted", {"labels", "weighted"});
   refused(nullptr, "classical", {"null"});
 }

@@ -25,9 +25,7 @@ class RealDrive {
     LocalizerOptions options;
     options.method = LocalizationMethod::named(method);
     options.alignment.threads = threads;
-    VoxelWeighting weighting;
-    weighting.confidence = options.method.confidence;
-    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map_.reweighted(weighting)), options);
+    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map_.reweighted(options.method.voxels)), options);
     const std::vector<int> numbers = selected(scans);
     localizer.setInitialPose(reference_[static_cast<std::size_t>(numbers.front())]);
     SequenceLocalization run = localizeSequence(localizer, sequence_, numbers);

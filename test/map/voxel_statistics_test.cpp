@@ -201,12 +201,12 @@ TEST(VoxelWeights, MeanConfidenceOfMixedLabelsByHand) {
     EXPECT_EQ(map.fine().size(), 1U);
     return map.fine().voxel(0);
   };
-  // Default: (2 * 0.5 + 6 * 1 + 4 * 0.75) / 12 = 10 / 12. Planar: sigma_x^2 : sigma_y^2 is 0.6 : 0.72 (sums of squares
+  // Default: (2 * 0.65 + 6 * 1 + 4 * 0.85) / 12 = 10.7 / 12. Planar: sigma_x^2 : sigma_y^2 is 0.6 : 0.72 (sums of squares
   // 3 * 2 * (0.3^2 + 0.1^2) and 8 * 0.3^2), f_L = 1 - sqrt(0.6 / 0.72) = 0.09.
   EXPECT_EQ(voxelWith(ConfidenceOptions()).structure_class, StructureClass::Planar);
   EXPECT_EQ(voxelWith(ConfidenceOptions()).point_count, 12U);
-  EXPECT_DOUBLE_EQ(voxelWith(ConfidenceOptions()).mean_confidence, 10.0 / 12.0);
-  EXPECT_DOUBLE_EQ(voxelWith(ConfidenceOptions()).weight, 10.0 / 12.0 * 1.25);
+  EXPECT_DOUBLE_EQ(voxelWith(ConfidenceOptions()).mean_confidence, 10.7 / 12.0);
+  EXPECT_DOUBLE_EQ(voxelWith(ConfidenceOptions()).weight, 10.7 / 12.0 * 1.25);
   // The paper's: noise takes no part, neither in the mean confidence, (2 * 0.5 + 6 * 1) / 8, nor in the count. The
   // rows y = 0.2 and 0.5 are left: sums of squares 2 * 2 * (0.3^2 + 0.1^2) = 0.4 and 8 * 0.15^2 = 0.18,
   // f_L = 1 - sqrt(0.18 / 0.4) = 0.33 and f_P = 0.67.

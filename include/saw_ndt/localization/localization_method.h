@@ -13,7 +13,7 @@ struct LocalizationMethod {
   bool segment = true;            ///< label the scan; without it every raw point is a source point
   double ground_ratio = 0.5;      ///< rho, the share of ground points kept, in [0, 1]
   bool use_weights = true;        ///< W_ij of eq. (1) of the paper, or 1
-  ConfidenceOptions confidence;   ///< of map and source points; a label of confidence 0 takes no part
+  VoxelWeighting voxels;          ///< how the map is read; its confidences are the source points' as well
   double mismatch_penalty = 0.1;  ///< lambda_m
   double outlier_ratio = 0.55;    ///< of Magnusson's score function, in (0, 1)
 

@@ -80,8 +80,8 @@ void concludeLocalization(LocalizationResult& result, const AcceptanceOptions& l
 /// scan.
 class Localizer {
  public:
-  /// @param map  read with the confidences of options.method (see WeightedVoxelMap::load and reweighted)
-  /// @throws std::invalid_argument where an option does not hold, the map is null, was read with other confidences, or
+  /// @param map  read with options.method.voxels (see WeightedVoxelMap::load and reweighted)
+  /// @throws std::invalid_argument where an option does not hold, the map is null, was read in another way, or
   ///         has no labels while the method segments
   Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options);
 

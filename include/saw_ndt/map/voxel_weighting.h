@@ -14,8 +14,8 @@ enum class StructureClass : std::uint8_t { Linear = 1, Planar = 2, Volumetric = 
 /// the statistics of a voxel nor as a source point. The default trusts noise (points of components that are too small
 /// for the segmentation to keep) less than the rest but does not drop it; paper() drops it.
 struct ConfidenceOptions {
-  double noise = 0.75;
-  double ground = 0.5;      ///< s_g of the paper
+  double noise = 0.85;
+  double ground = 0.65;     ///< s_g of the paper, 0.5 there
   double non_ground = 1.0;  ///< s_o of the paper
 
   /// The confidences of the paper: rejected points take no part.
@@ -23,6 +23,9 @@ struct ConfidenceOptions {
   /// Every point counts alike, whatever its label: classical NDT.
   static ConfidenceOptions uniform() { return {1.0, 1.0, 1.0}; }
 
+  bool operator==(const ConfidenceOptions& other) const {
+    return noise == other.noise && ground == other.ground && non_ground == other.non_ground;
+  }
   double of(StructuralLabel label) const {
     return label == StructuralLabel::Ground ? ground : label == StructuralLabel::NonGround ? non_ground : noise;
   }
@@ -37,9 +40,15 @@ struct VoxelWeighting {
   double planar_alpha = 1.25;          ///< alpha of planar voxels
   double volumetric_alpha = 1.0;       ///< alpha of volumetric voxels
   int min_points_per_voxel = 6;        ///< voxels with fewer points have no distribution; at least 3
-  double min_eigenvalue_ratio = 0.01;  ///< smaller eigenvalues are raised to this share of the largest, in (0, 1]
+  double min_eigenvalue_ratio = 0.01;  ///< smaller eigenvalues are raised to this share of the largest, in (0, 1];
+                                       ///< 0.01 is PCL's
   int coarse_factor = 3;               ///< edge of a coarse voxel, in voxels: 2 or more; 1 for no coarse level
 
+  bool operator==(const VoxelWeighting& other) const {
+    return confidence == other.confidence && linear_alpha == other.linear_alpha && planar_alpha == other.planar_alpha &&
+           volumetric_alpha == other.volumetric_alpha && min_points_per_voxel == other.min_points_per_voxel &&
+           min_eigenvalue_ratio == other.min_eigenvalue_ratio && coarse_factor == other.coarse_factor;
+  }
   double alpha(StructureClass structure_class) const {
     return structure_class == StructureClass::Linear   ? linear_alpha
            : structure_class == StructureClass::Planar ? planar_alpha

@@ -20,12 +20,12 @@ struct LidarOptions {
   /// What of the vehicle itself hides the view, in the LiDAR's frame (m); empty: nothing. A van's roof.
   Eigen::AlignedBox3f own_vehicle{Eigen::Vector3f(-1.05f, -0.5f, -1.5f), Eigen::Vector3f(0.92f, 0.5f, -0.35f)};
 
-  double range_noise_m = 0.02;         ///< standard deviation of one return
-  double beam_range_offset_m = 0.015;  ///< standard deviation of the constant range errors of the beams
-  double angle_jitter_rad = 1e-4;      ///< standard deviation of a ray's azimuth and elevation, not measured
-  double beam_divergence_rad = 2e-3;   ///< full angle of a beam
-  double pulse_length_m = 0.75;        ///< surfaces that are closer than this along a beam give one mixed return
-  double edge_step_m = 0.1;            ///< a step in range from which two neighbouring returns lie on two surfaces
+  double range_noise_m = 0.015;       ///< standard deviation of one return
+  double beam_range_offset_m = 0.02;  ///< standard deviation of the constant range errors of the beams
+  double angle_jitter_rad = 1e-4;     ///< standard deviation of a ray's azimuth and elevation, not measured
+  double beam_divergence_rad = 2e-3;  ///< full angle of a beam
+  double pulse_length_m = 0.75;       ///< surfaces that are closer than this along a beam give one mixed return
+  double edge_step_m = 0.1;           ///< a step in range from which two neighbouring returns lie on two surfaces
 
   /// Range (m) at which half the returns of a diffuse surface of reflectivity 0.1 are lost when hit at a right angle.
   double detection_range_m = 70.0;
