@@ -98,13 +98,13 @@ Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const Localize
       filter_(options.source_voxel_size_m),
       prediction_(options.prediction) {
   if (!map_) throw std::invalid_argument("Localizer: the map is a null pointer");
-  if (!(map_->weighting() == options_.method.voxels)) {
-    throw std::invalid_argument("Localizer: the map was read with another VoxelWeighting than that of method " +
-                                options_.method.name);
-  }
   if (options_.method.segment && !map_->labelled()) {
     throw std::invalid_argument("Localizer: method " + options_.method.name +
                                 " needs a map with labels, and this one was built without");
+  }
+  if (!(map_->weighting() == options_.method.voxels)) {
+    throw std::invalid_argument("Localizer: the map was read with another VoxelWeighting than that of method " +
+                                options_.method.name + ": read it with LocalizationMethod::voxels");
   }
   options_.alignment.use_weights = options_.method.use_weights;
   options_.alignment.mismatch_penalty = options_.method.mismatch_penalty;

@@ -23,11 +23,11 @@ std::vector<Material> sceneMaterials() {
   // Class and reflectivity near 905 nm, in the order of SceneMaterial. Panes let nearly everything through or send it
   // elsewhere.
   std::vector<Material> materials = {
-      {40, 0.20f}, {48, 0.30f}, {72, 0.35f},                                         // asphalt, pavement, grass
-      {50, 0.40f}, {50, 0.02f}, {50, 0.25f},                                         // facade, its windows, roof
-      {52, 0.40f}, {51, 0.35f},                                                      // concrete, wood
-      {70, 0.35f}, {71, 0.30f},                                                      // leaf, bark
-      {80, 0.45f}, {51, 0.50f}, {81, 2.00f},                                         // pole, guard rail, sign
+      {40, 0.20f}, {48, 0.30f}, {72, 0.35f},                                          // asphalt, pavement, grass
+      {50, 0.40f}, {50, 0.02f}, {50, 0.25f},                                          // facade, its windows, roof
+      {52, 0.40f}, {51, 0.35f},                                                       // concrete, wood
+      {70, 0.35f}, {71, 0.30f},                                                       // leaf, bark
+      {80, 0.45f}, {51, 0.50f}, {81, 2.00f},                                          // pole, guard rail, sign
       {10, 0.50f}, {10, 0.08f}, {10, 0.003f}, {10, 0.05f}, {18, 0.50f}, {30, 0.35f},  // truck, person
   };
   const std::size_t count = materials.size();

@@ -13,8 +13,8 @@ namespace {
 constexpr int kVariants = 6;
 /// Where what is not to be seen is kept.
 const Eigen::Vector3d kOutOfSight(0.0, 0.0, -10000.0);
-/// An object drives on this far beyond the ends of the way.
-constexpr double kOverrun_m = 60.0;
+/// An object drives on this far beyond the ends of the way, where there is still ground near the way.
+constexpr double kOverrun_m = 30.0;
 
 /// Where things that move along a route are.
 struct Traveller {

@@ -54,7 +54,7 @@ TEST(MapSummary, CountsByHand) {
   EXPECT_DOUBLE_EQ(summary.mean_confidence.mean, 0.79375);
   EXPECT_DOUBLE_EQ(summary.weight.min, 0.6375);
   EXPECT_DOUBLE_EQ(summary.weight.max, 0.921875);
-  EXPECT_DOUBLE_EQ(summary.weight.mean, 0.671875);
+  EXPECT_DOUBLE_EQ(summary.weight.mean, 0.7796875);
 }
 
 TEST(MapSummary, AsJsonAndAsText) {
@@ -66,7 +66,7 @@ TEST(MapSummary, AsJsonAndAsText) {
   EXPECT_DOUBLE_EQ(json.at("label_points").at("non_ground_share"), 0.2);
   EXPECT_DOUBLE_EQ(json.at("class_voxels").at("linear_share"), 0.5);
   EXPECT_EQ(json.at("class_voxels").at("volumetric"), 0);
-  EXPECT_DOUBLE_EQ(json.at("weight").at("max"), 0.78125);
+  EXPECT_DOUBLE_EQ(json.at("weight").at("max"), 0.921875);
   const std::string text = toText(summary);
   EXPECT_NE(text.find("points                        15\n"), std::string::npos) << text;
   EXPECT_NE(text.find("label_points.noise_share      0.4\n"), std::string::npos) << text;
@@ -100,13 +100,13 @@ TEST(VoxelCloud, TellsMeanLabelClassAndWeight) {
   EXPECT_NEAR(cloud[0].x, -1.775, 1e-5);
   EXPECT_EQ(cloud[0].label, 0U);
   EXPECT_EQ(cloud[0].structure_class, 1.0F);
-  EXPECT_EQ(cloud[0].weight, 0.5625F);
+  EXPECT_EQ(cloud[0].weight, 0.6375F);
   EXPECT_NEAR(cloud[1].x, 0.2, 1e-5);
   EXPECT_NEAR(cloud[1].y, 0.225, 1e-5);
   EXPECT_NEAR(cloud[1].z, 0.25, 1e-5);
   EXPECT_EQ(cloud[1].label, 1U);
   EXPECT_EQ(cloud[1].structure_class, 2.0F);
-  EXPECT_EQ(cloud[1].weight, 0.78125F);
+  EXPECT_EQ(cloud[1].weight, 0.921875F);
 }
 
 TEST(VoxelCloud, LabelsThatTakeNoPartAreNoVoxelsLabel) {

@@ -225,7 +225,8 @@ TEST_F(LocalizerTest, RefusesMapsThatDoNotFitTheMethod) {
   };
   const auto labelled = std::make_shared<const WeightedVoxelMap>(mapOf(streetCorner(1)));
   const auto unlabelled = std::make_shared<const WeightedVoxelMap>(mapOf(withoutLabels(streetCorner(1))));
-  EXPECT_NO_THROW(Localizer(labelled, LocalizerOptions()));
+  const auto read = std::make_shared<const WeightedVoxelMap>(labelled->reweighted(LocalizerOptions().method.voxels));
+  EXPECT_NO_THROW(Localizer(read, LocalizerOptions()));
   refused(labelled, "weighted-s50", {"VoxelWeighting", "weighted-s50"});
   refused(labelled, "classical", {"VoxelWeighting", "classical"});
   refused(unlabelled, "weighted", {"labels", "weighted"});

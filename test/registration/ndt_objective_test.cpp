@@ -208,7 +208,9 @@ TEST(NdtObjective, WeightOfAPairIsWhatEquationOneSays) {
       }
     }
   }
-  const WeightedVoxelMap map = mapOf(target);
+  VoxelWeighting weighting;
+  weighting.confidence = ConfidenceOptions::paper();
+  const WeightedVoxelMap map = mapOf(target).reweighted(weighting);
   ASSERT_EQ(map.fine().size(), 1u);
   SourcePoints source;
   source.labelled = true;

@@ -67,7 +67,7 @@ TEST(WeightedNdt, LabelsChangeTheScoreUnlessWeightsAreOff) {
   Plain output;
   classical.align(output, guessOf(1));
   EXPECT_EQ(likelihood(false), classical.getTransformationLikelihood());
-  EXPECT_LT(likelihood(true), 0.9 * likelihood(false));
+  EXPECT_LT(likelihood(true), 0.95 * likelihood(false));
 }
 
 TEST(WeightedNdt, HonoursIndices) {

@@ -18,10 +18,10 @@ TEST(Route, ACircleClosesAndHasItsRadius) {
   const Route route = Route::fromCourse(scene, 1);
   ASSERT_EQ(route.stations().size(), 628U);
   // Chords of one metre: the circle through their ends differs from the stated one by less than a millimetre and the
-  // rounding of its length to whole metres by 0.05 m.
+  // rounding of its length to whole metres moves its middle by up to 0.1 m.
   const Eigen::Vector2d centre(0.0, 100.0);
   for (const RouteStation& station : route.stations()) {
-    EXPECT_NEAR((station.position.head<2>() - centre).norm(), 100.0, 0.1);
+    EXPECT_NEAR((station.position.head<2>() - centre).norm(), 100.0, 0.11);
   }
   EXPECT_LT((route.stations().back().position - route.stations().front().position).norm(), 1.1);
 }

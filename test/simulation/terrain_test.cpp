@@ -51,13 +51,16 @@ TEST(Terrain, TheMeshLiesOnTheGroundAndIsNamedByWhereItIs) {
       middle += vertex.head<2>() / 3.0;
       longest = std::max(longest, (mesh.vertices[index] - mesh.vertices[mesh.triangles[i][0]]).norm() * 1.0);
       // A block looks at the stations near its centre, a point at those near itself: far out they differ a little.
-      if (terrain.edgeDistance(vertex.head<2>()) < 10.0)
+      if (terrain.edgeDistance(vertex.head<2>()) < 10.0) {
         EXPECT_NEAR(vertex.z(), terrain.height(vertex.head<2>()), 2e-3);
+      }
     }
     const double edge_m = terrain.edgeDistance(middle);
     const std::uint16_t expected = edge_m < 0.0 ? 1 : edge_m < 1.5 ? 2 : 3;
     const bool near_a_border = std::abs(edge_m) < longest || std::abs(edge_m - 1.5) < longest;
-    if (!near_a_border) EXPECT_EQ(mesh.materials[i], expected) << edge_m;
+    if (!near_a_border) {
+      EXPECT_EQ(mesh.materials[i], expected) << edge_m;
+    }
   }
 }
 

@@ -74,7 +74,7 @@ TEST(VehicleDriving, RepeatsATrajectory) {
   for (std::size_t i = 5; i < 75; ++i) {
     const Eigen::Isometry3d difference = poses[i].inverse() * motion.T_scene_lidar[i];
     // The first drive wanders within the lane; the road's height is a mean over metres of the trajectory's.
-    EXPECT_LT(std::abs(difference.translation().x()), 0.05);
+    EXPECT_LT(std::abs(difference.translation().x()), 0.08);  // it leans by 2 degrees, 1.73 m up
     EXPECT_LT(std::abs(difference.translation().y()), 0.15);
     EXPECT_LT(std::abs(difference.translation().z()), 0.05);
     EXPECT_LT(rotationAngle(difference.linear()), radiansFromDegrees(2.5));
