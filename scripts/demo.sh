@@ -11,9 +11,9 @@ set -euo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 kitti=${1:-${KITTI_ROOT:-}}
 (( $# )) && shift
-output=${DEMO_OUTPUT:-$root/demo}
+[[ -z $kitti ]] || kitti=$(realpath -- "$kitti")
+output=$(realpath -m -- "${DEMO_OUTPUT:-$root/demo}")
 scans=${DEMO_SCANS:-150}
-apps=$root/build/release/apps
 
 step() { printf '\n[%3d s] %s\n' "$SECONDS" "$*"; }
 
@@ -28,32 +28,33 @@ if command -v ccache > /dev/null; then
 fi
 cmake --preset release "${launcher[@]}" > /dev/null
 cmake --build --preset release --parallel "$(nproc)" --target saw_ndt_simulate saw_ndt_benchmark
-cd -- "$OLDPWD"
 mkdir -p -- "$output"
+cd -- "$output"
+export PATH=$root/build/release/apps:$PATH
 
 if [[ -n $kitti ]]; then
   step "Localizing KITTI's sequences 00, 01 and 03 in maps of their own"
-  "$apps/saw_ndt_benchmark" "$kitti"/sequences/{00,01,03} -paper -output "$output/kitti" "$@"
+  saw_ndt_benchmark "$kitti"/sequences/{00,01,03} -paper -output kitti "$@"
   step "Done. The report: $output/kitti/report.html"
   exit 0
 fi
 
 scenes=(residential highway rural)
 drives=() maps=()
-rm -rf -- "$output/drives"
+rm -rf -- drives
 for scene in "${scenes[@]}"; do
   for drive in 1 2; do
     step "Simulating $scene, drive $drive"
-    "$apps/saw_ndt_simulate" "$output/drives/$drive/$scene" -scene "$scene" -drive "$drive" -scans "$scans"
+    saw_ndt_simulate "drives/$drive/$scene" -scene "$scene" -drive "$drive" -scans "$scans"
   done
-  drives+=("$output/drives/2/$scene")
-  maps+=("$output/drives/1/$scene")
+  drives+=("drives/2/$scene")
+  maps+=("drives/1/$scene")
 done
 
 step "Beside PCL's own class, on a few scans"
-"$apps/saw_ndt_benchmark" "${drives[0]}" -map-from "${maps[0]}" -drives other -methods weighted,classical,pcl-ndt \
-  -scans 40:60:2 -map-scans 0:100 -skip 0 -output "$output/pcl"
+saw_ndt_benchmark "${drives[0]}" -map-from "${maps[0]}" -drives other -methods weighted,classical,pcl-ndt \
+  -scans 40:60:2 -map-scans 0:100 -skip 0 -output pcl
 
 step "Localizing each drive in the map of the other and in its own"
-"$apps/saw_ndt_benchmark" "${drives[@]}" -map-from "$(IFS=,; echo "${maps[*]}")" -output "$output/simulated"
+saw_ndt_benchmark "${drives[@]}" -map-from "$(IFS=,; echo "${maps[*]}")" -output simulated
 step "Done. The report: $output/simulated/report.html"
