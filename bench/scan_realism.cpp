@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <iostream>
 #include <map>
+#include <sstream>
 
 #include "app_options.h"
 #include "progress_bar.h"
@@ -58,25 +59,22 @@ std::string judged(double value, double least, double greatest) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::string> drives;
-  std::string real, scans = "::10", real_scans = ":";
+  std::vector<std::string> drives, real_drives;
+  std::string scans = "::10", real_scans = ":";
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::AppOptions app(
       "scan_realism",
       "Prints the median of figures of the scans of each SEQUENCE beside the least and the greatest value of all scans "
       "of real drives; what lies outside is bold, with its distance from the span's nearer end.");
   app.addPositionalList("SEQUENCE", &drives, "folder in KITTI layout, such as a simulated drive");
-  app.addOption("real", &real, "FOLDER,...", "real drives in KITTI layout; needed");
+  app.addOption("real", &real_drives, "FOLDER,...", "real drives in KITTI layout; needed");
   app.addOption("scans", &scans, "SLICE", "scans of each SEQUENCE");
   app.addOption("real-scans", &real_scans, "SLICE", "scans of each real drive");
   segmentation.addTo(app);
 
   return saw_ndt::runApp(argc, argv, app, [&] {
-    if (real.empty()) throw saw_ndt::UsageError("option -real is needed");
+    if (real_drives.empty()) throw saw_ndt::UsageError("option -real is needed");
     saw_ndt::ScanSegmenter segmenter(segmentation.options());
-    std::vector<std::string> real_drives;
-    std::stringstream list(real);
-    for (std::string folder; std::getline(list, folder, ',');) real_drives.push_back(folder);
     saw_ndt::ProgressBar progress(real_drives.size() + drives.size());
 
     std::map<std::string, std::vector<double>> real_values;
