@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Installs the packages of Debian 12 (or Ubuntu 22.04 and later) that building, testing and running need, if any is missing.
+# Installs the packages of Debian 12 that building, testing and running need, if any is missing.
 # This is the one list of them. libpcl-dev brings Eigen, Boost, FLANN, VTK, Qt and MPI, which PCL's CMake package asks for.
 set -euo pipefail
 
 packages=(
   build-essential cmake ninja-build ccache
   libpcl-dev libeigen3-dev libboost-dev libboost-program-options-dev
-  nlohmann-json3-dev libembree-dev gnuplot-nox
+  nlohmann-json3-dev libhwy-dev libembree-dev
   libgtest-dev libbenchmark-dev
   gnuplot-nox
 )

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+namespace saw_ndt {
+
+/// The vector instructions that the inner loops are compiled for, each set holding those before it.
+enum class InstructionSet {
+  BASELINE,  ///< what every processor of the architecture has
+  AVX2,      ///< AVX2 with fused multiply-add
+  AVX512,    ///< AVX-512 F, BW, CD, DQ and VL
+};
+
+/// The set in use: the best that this processor has, or less where the environment variable SAW_NDT_INSTRUCTION_SET
+/// ("baseline", "avx2" or "avx512") or limitInstructionSet() says so. Labels, maps and ground do not depend on it; the
+/// last digits of a pose do, since a fused multiply-add rounds once.
+/// @throws std::invalid_argument where the environment variable holds something else
+InstructionSet instructionSet();
+
+/// Uses no more than `most` from now on, nor more than the environment variable says; AVX512 lifts an earlier limit.
+/// For tests and benchmarks: not to be called while other threads compute.
+void limitInstructionSet(InstructionSet most);
+
+/// "baseline", "avx2" or "avx512"
+const char* toString(InstructionSet set);
+/// The inverse of toString(). @throws std::invalid_argument that lists the names, for another one
+InstructionSet instructionSetNamed(const std::string& name);
+
+}  // namespace saw_ndt

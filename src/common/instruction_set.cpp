@@ -1,0 +1,84 @@
+#include "saw_ndt/common/instruction_set.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "hwy/highway.h"
+
+namespace saw_ndt {
+namespace {
+
+constexpr std::array<InstructionSet, 3> kAll = {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512};
+
+// Highway's targets beyond a set.
+std::int64_t targetsBeyond(InstructionSet most) {
+#if HWY_ARCH_X86
+  const std::int64_t avx512 = HWY_AVX3 | HWY_AVX3_DL;
+  if (most == InstructionSet::BASELINE) return avx512 | HWY_AVX2;
+  if (most == InstructionSet::AVX2) return avx512;
+#else
+  static_cast<void>(most);
+#endif
+  return 0;
+}
+
+// The most that the environment variable allows.
+InstructionSet environmentLimit() {
+  const char* const name = std::getenv("SAW_NDT_INSTRUCTION_SET");
+  if (name == nullptr || *name == '\0') return InstructionSet::AVX512;
+  try {
+    return instructionSetNamed(name);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("environment variable SAW_NDT_INSTRUCTION_SET: " + std::string(error.what()));
+  }
+}
+
+// Read once, before the first choice.
+InstructionSet readEnvironmentLimit() {
+  static const InstructionSet limit = [] {
+    const InstructionSet most = environmentLimit();
+    hwy::DisableTargets(targetsBeyond(most));
+    return most;
+  }();
+  return limit;
+}
+
+}  // namespace
+
+InstructionSet instructionSet() {
+  readEnvironmentLimit();
+#if HWY_ARCH_X86
+  const std::int64_t targets = hwy::SupportedTargets();
+  if ((targets & HWY_AVX3) != 0) return InstructionSet::AVX512;
+  if ((targets & HWY_AVX2) != 0) return InstructionSet::AVX2;
+#endif
+  return InstructionSet::BASELINE;
+}
+
+void limitInstructionSet(InstructionSet most) {
+  hwy::DisableTargets(targetsBeyond(std::min(most, readEnvironmentLimit())));
+}
+
+const char* toString(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::BASELINE:
+      return "baseline";
+    case InstructionSet::AVX2:
+      return "avx2";
+    case InstructionSet::AVX512:
+      return "avx512";
+  }
+  return "unknown";
+}
+
+InstructionSet instructionSetNamed(const std::string& name) {
+  for (const InstructionSet set : kAll) {
+    if (name == toString(set)) return set;
+  }
+  throw std::invalid_argument("instruction set " + name + ": must be one of baseline avx2 avx512");
+}
+
+}  // namespace saw_ndt
