@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "common/instruction_set_limit.h"
 #include "hwy/highway.h"
 
 namespace saw_ndt {
@@ -47,6 +48,8 @@ InstructionSet readEnvironmentLimit() {
 }
 
 }  // namespace
+
+void obeyInstructionSetLimit() { readEnvironmentLimit(); }
 
 InstructionSet instructionSet() {
   readEnvironmentLimit();

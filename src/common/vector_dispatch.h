@@ -21,11 +21,12 @@
 // What is included in between the namespaces must be light: code of other headers that is compiled there for a greater
 // instruction set could be linked into code for a lesser one.
 
+#include "common/instruction_set_limit.h"
+
 // No include guard: the file is read anew for each set.
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
-#include "saw_ndt/common/instruction_set.h"
 
 #undef SAW_NDT_DISPATCH
 /// The version of an exported function for the instruction set in use.
-#define SAW_NDT_DISPATCH(function) (static_cast<void>(::saw_ndt::instructionSet()), HWY_DYNAMIC_DISPATCH(function))
+#define SAW_NDT_DISPATCH(function) (::saw_ndt::obeyInstructionSetLimit(), HWY_DYNAMIC_DISPATCH(function))
