@@ -109,6 +109,7 @@ Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const Localize
   options_.alignment.use_weights = options_.method.use_weights;
   options_.alignment.mismatch_penalty = options_.method.mismatch_penalty;
   options_.alignment.outlier_ratio = options_.method.outlier_ratio;
+  options_.alignment.evaluate_likelihoods = true;
 }
 
 const SourcePoints& Localizer::makeSource(const ScanView& scan, StageTimes& times) {
@@ -148,8 +149,7 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
   result.alignment = aligner_.align(*map_, source, result.T_map_base_predicted, options_.alignment);
   result.times.align_ms = alignment.milliseconds();
 
-  result.likelihoods = evaluateLikelihoods(map_->fine(), source, result.alignment.T_map_source,
-                                           AlignmentOptions().outlier_ratio, threadCount(options_.alignment.threads));
+  result.likelihoods = result.alignment.likelihoods;
   concludeLocalization(result, options_.acceptance, prediction_);
   if (result.accepted()) result.covariance = inverseOrZero(result.alignment.information);
   result.times.total_ms = total.milliseconds();

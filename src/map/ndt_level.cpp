@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -54,6 +55,13 @@ std::optional<VoxelStatistics> voxelOf(const LabelledVoxelSums* first, const Lab
 
 }  // namespace
 
+PackedNdtCell::PackedNdtCell(const NdtCell& cell)
+    : weight(static_cast<float>(cell.weight)), mean_confidence(static_cast<float>(cell.mean_confidence)) {
+  const auto to_single = [](double value) { return static_cast<float>(value); };
+  std::transform(std::begin(cell.mean_from_centre), std::end(cell.mean_from_centre), mean_from_centre, to_single);
+  std::transform(std::begin(cell.inverse_covariance), std::end(cell.inverse_covariance), inverse_covariance, to_single);
+}
+
 NdtLevel::NdtLevel(double resolution_m, const std::vector<VoxelStatistics>& voxels) : resolution_m_(resolution_m) {
   if (voxels.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
     throw std::length_error("a map level cannot hold more than 2147483647 voxels");
@@ -73,6 +81,7 @@ NdtLevel::NdtLevel(double resolution_m, const std::vector<VoxelStatistics>& voxe
     point_counts_.push_back(v.point_count);
     structure_classes_.push_back(v.structure_class);
   }
+  packed_cells_ = std::vector<PackedNdtCell>(cells_.begin(), cells_.end());
   index_ = VoxelIndex(voxels_);
 }
 

@@ -14,7 +14,7 @@ constexpr double kRidge = 1e-9;
 
 // A step that promises to raise the score by less than this share of it is as good as none: where pairs appear and
 // vanish at the faces of voxels, the score has edges on which no step, however short, ends at a slope of zero.
-constexpr double kNegligibleGain = 1e-9;
+constexpr double kNegligibleGain = 1e-8;
 
 Matrix6d ridged(const Matrix6d& curvature) {
   Matrix6d result = curvature;

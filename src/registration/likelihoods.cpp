@@ -1,41 +1,31 @@
 #include "saw_ndt/registration/likelihoods.h"
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
+#include <omp.h>
 
-#include "voxel_pairs.h"
+#include <algorithm>
+
+#include "registration/pair_parameters.h"
+#include "registration/voxel_runs.h"
 
 namespace saw_ndt {
 namespace {
 
-struct Sums {
-  double all = 0.0, non_ground = 0.0, best = 0.0;
-  std::size_t non_ground_points = 0, matched_points = 0;
-};
-
-Sums sumBlock(const NdtLevel& level, const SourcePoints& source, const Eigen::Isometry3d& T_map_source,
-              const ScoreParameters& parameters, std::size_t first, std::size_t last) {
-  Sums sums;
-  VoxelPairs pairs(level, T_map_source);
-  for (std::size_t i = first; i < last; ++i) {
-    const Eigen::Vector3d r = T_map_source.linear() * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
-    double total = 0.0, best = 0.0;
-    bool matched = false;
-    pairs.forEach<NeighborhoodSearchMethod::DIRECT7>(r, [&](const NdtCell& cell, double qx, double qy, double qz) {
-      const double exponent = 0.5 * parameters.d2 * WhitenedOffset(cell, qx, qy, qz).squared_mahalanobis;
-      const double score = exponent > kLargestExponent ? 0.0 : parameters.amplitude * std::exp(-exponent);
-      total += score;
-      best = std::max(best, score);
-      matched = true;
-    });
-    sums.all += total;
-    sums.best += best;
-    sums.matched_points += matched;
-    if (source.label[i] != static_cast<std::uint8_t>(StructuralLabel::Ground)) {
-      sums.non_ground += total;
-      ++sums.non_ground_points;
-    }
+LikelihoodSums sumBatch(const BatchScratch& scratch, const float* total, const float* best,
+                        const std::uint8_t* labels) {
+  LikelihoodSums sums;
+  const BatchPoints& points = scratch.points;
+  for (std::size_t run = 0; run < points.run_count; ++run) {
+    const auto begin = static_cast<std::size_t>(points.run_starts[run]);
+    const auto end = static_cast<std::size_t>(points.run_starts[run + 1]);
+    if (scratch.voxels.first[run] != scratch.voxels.first[run + 1]) sums.matched_points += end - begin;
+  }
+  const auto count = static_cast<std::size_t>(points.run_starts[points.run_count]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool non_ground = labels[i] != static_cast<std::uint8_t>(StructuralLabel::Ground);
+    sums.all += static_cast<double>(total[i]);
+    sums.best += static_cast<double>(best[i]);
+    sums.non_ground += non_ground ? static_cast<double>(total[i]) : 0.0;
+    sums.non_ground_points += non_ground ? 1 : 0;
   }
   return sums;
 }
@@ -44,22 +34,32 @@ double ratio(double sum, std::size_t count) { return count == 0 ? 0.0 : sum / st
 
 }  // namespace
 
-Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& source,
-                                const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads) {
+Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
+                                double outlier_ratio, int threads, BatchWorkspace& workspace) {
   Likelihoods likelihoods;
   if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return likelihoods;
-  const ScoreParameters parameters = scoreParameters(ScoreFunction::Magnusson, outlier_ratio, level.resolution());
-  constexpr std::size_t kPointsPerBlock = 2048;
-  const auto block_count = static_cast<std::ptrdiff_t>((source.size() + kPointsPerBlock - 1) / kPointsPerBlock);
-  std::vector<Sums> blocks(static_cast<std::size_t>(block_count));
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::ptrdiff_t b = 0; b < block_count; ++b) {
-    const std::size_t first = static_cast<std::size_t>(b) * kPointsPerBlock;
-    blocks[static_cast<std::size_t>(b)] =
-        sumBlock(level, source, T_map_source, parameters, first, std::min(first + kPointsPerBlock, source.size()));
+  const PairParameters parameters =
+      pairParameters(level, NeighborhoodSearchMethod::DIRECT7,
+                     scoreParameters(ScoreFunction::Magnusson, outlier_ratio, level.resolution()), {});
+  workspace.prepare(threads);
+  workspace.batch_likelihoods.resize((source.size() + kPointsPerBatch - 1) / kPointsPerBatch);
+  const auto batch_count = static_cast<std::ptrdiff_t>(workspace.batch_likelihoods.size());
+#pragma omp parallel num_threads(threads)
+  {
+    BatchScratch& scratch = *workspace.scratch_of_thread[static_cast<std::size_t>(omp_get_thread_num())];
+    VoxelRuns runs(level, NeighborhoodSearchMethod::DIRECT7, T_map_source);
+    float* const total = scratch.sums.score;
+    float* const best = scratch.sums.pull[0];
+#pragma omp for schedule(dynamic)
+    for (std::ptrdiff_t b = 0; b < batch_count; ++b) {
+      const std::size_t first = static_cast<std::size_t>(b) * kPointsPerBatch;
+      runs.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
+      accumulateScores(scratch.points, scratch.voxels, parameters, total, best);
+      workspace.batch_likelihoods[static_cast<std::size_t>(b)] = sumBatch(scratch, total, best, source.label() + first);
+    }
   }
-  Sums total;
-  for (const Sums& sums : blocks) {
+  LikelihoodSums total;
+  for (const LikelihoodSums& sums : workspace.batch_likelihoods) {
     total.all += sums.all;
     total.non_ground += sums.non_ground;
     total.best += sums.best;
@@ -70,6 +70,15 @@ Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& sourc
   likelihoods.non_ground = ratio(total.non_ground, total.non_ground_points);
   likelihoods.nearest_voxel = ratio(total.best, total.matched_points);
   return likelihoods;
+}
+
+Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& source,
+                                const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads) {
+  if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return {};
+  OrderedSource ordered;
+  ordered.order(source, level.resolution(), ConfidenceOptions::uniform());
+  BatchWorkspace workspace;
+  return evaluateLikelihoods(level, ordered, T_map_source, outlier_ratio, threads, workspace);
 }
 
 }  // namespace saw_ndt

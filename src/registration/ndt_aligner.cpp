@@ -5,21 +5,45 @@
 
 #include "optimizers.h"
 #include "saw_ndt/common/threads.h"
+#include "saw_ndt/registration/vectorized_ndt_objective.h"
 
 namespace saw_ndt {
 namespace {
 
-NdtObjective objectiveOn(const NdtLevel& level, const WeightedVoxelMap& map, const SourcePoints& source,
-                         const AlignmentOptions& options) {
-  PairWeighting weighting;
-  weighting.enabled = options.use_weights && map.labelled() && source.labelled;
-  weighting.mismatch_penalty = options.mismatch_penalty;
-  weighting.confidence = map.weighting().confidence;
+PairWeighting pairWeighting(const WeightedVoxelMap& map, const SourcePoints& source, const AlignmentOptions& options) {
+  return {options.use_weights && map.labelled() && source.labelled, options.mismatch_penalty,
+          map.weighting().confidence};
+}
+
+template <typename Objective>
+Objective objectiveOn(const NdtLevel& level, const WeightedVoxelMap& map, const SourcePoints& source,
+                      const AlignmentOptions& options) {
   return {level, options.neighborhood_search,
-          scoreParameters(options.score_function, options.outlier_ratio, level.resolution()), weighting};
+          scoreParameters(options.score_function, options.outlier_ratio, level.resolution()),
+          pairWeighting(map, source, options)};
 }
 
 }  // namespace
+
+Evaluation NdtAligner::evaluationOn(const NdtLevel& level, const WeightedVoxelMap& map, const SourcePoints& source,
+                                    std::size_t stride, const AlignmentOptions& options) {
+  const int threads = threadCount(options.threads);
+  if (options.arithmetic == Arithmetic::DOUBLE) {
+    const auto objective = objectiveOn<NdtObjective>(level, map, source, options);
+    return [this, objective, &source, threads, stride](const Eigen::Isometry3d& T) {
+      return objective.evaluate(source, T, threads, workspace_, stride);
+    };
+  }
+  OrderedSource* points = &ordered_;
+  if (stride > 1) {
+    thinned_.thin(ordered_, stride);
+    points = &thinned_;
+  }
+  const auto objective = objectiveOn<VectorizedNdtObjective>(level, map, source, options);
+  return [this, objective, points, threads](const Eigen::Isometry3d& T) {
+    return objective.evaluate(*points, T, threads, batches_);
+  };
+}
 
 AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoints& source,
                                   const Eigen::Isometry3d& guess, const AlignmentOptions& options) {
@@ -30,16 +54,14 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
   result.status = map.empty() ? AlignmentStatus::NO_TARGET : AlignmentStatus::NO_SOURCE;
   if (map.empty() || source.empty()) return result;
 
-  const int threads = threadCount(options.threads);
   const double resolution = map.resolution();
   StepLimits limits{options.max_iterations, options.translation_epsilon_m, options.rotation_epsilon_rad,
                     options.max_step_m * resolution};
+  ordered_.order(source, resolution, map.weighting().confidence);
 
   if (options.optimizer == Optimizer::DAMPED_NEWTON && options.use_coarse_level && !map.coarse().empty()) {
-    const NdtObjective coarse = objectiveOn(map.coarse(), map, source, options);
-    const Evaluation evaluate = [&](const Eigen::Isometry3d& T) {
-      return coarse.evaluate(source, T, threads, workspace_, static_cast<std::size_t>(options.coarse_stride));
-    };
+    const Evaluation evaluate =
+        evaluationOn(map.coarse(), map, source, static_cast<std::size_t>(options.coarse_stride), options);
     StepLimits coarse_limits = limits;
     coarse_limits.max_iterations = options.coarse_max_iterations;
     coarse_limits.translation_epsilon_m = options.coarse_settled_voxels * resolution;
@@ -51,22 +73,25 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
     result.iterations = 0;
   }
 
-  const NdtObjective fine = objectiveOn(map.fine(), map, source, options);
-  const Evaluation evaluate = [&](const Eigen::Isometry3d& T) { return fine.evaluate(source, T, threads, workspace_); };
+  const Evaluation evaluate = evaluationOn(map.fine(), map, source, 1, options);
   if (options.optimizer == Optimizer::DAMPED_NEWTON) {
     dampedNewton(evaluate, limits, options.least_curvature_share, result);
   } else {
     newtonMoreThuente(evaluate, limits, options.line_search_min_step, options.line_search_max_step, result);
   }
   result.likelihood = result.score / static_cast<double>(source.size());
+  if (options.evaluate_likelihoods) {
+    result.likelihoods = evaluateLikelihoods(map.fine(), ordered_, result.T_map_source,
+                                             AlignmentOptions().outlier_ratio, threadCount(options.threads), batches_);
+  }
   return result;
 }
 
 NdtDerivatives NdtAligner::evaluate(const WeightedVoxelMap& map, const SourcePoints& source,
                                     const Eigen::Isometry3d& T_map_source, const AlignmentOptions& options) {
   options.check();
-  return objectiveOn(map.fine(), map, source, options)
-      .evaluate(source, T_map_source, threadCount(options.threads), workspace_);
+  ordered_.order(source, map.resolution(), map.weighting().confidence);
+  return evaluationOn(map.fine(), map, source, 1, options)(T_map_source);
 }
 
 }  // namespace saw_ndt

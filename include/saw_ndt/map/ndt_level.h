@@ -9,12 +9,22 @@
 
 namespace saw_ndt {
 
-/// What matching reads of a voxel, packed.
+/// What matching reads of a voxel.
 struct NdtCell {
   double mean_from_centre[3];    ///< m
   double inverse_covariance[6];  ///< 1/m^2: xx xy xz yy yz zz
   double weight;                 ///< w_target of the paper
   double mean_confidence;
+};
+
+/// The same in single precision, in a cache line of its own.
+struct alignas(64) PackedNdtCell {
+  explicit PackedNdtCell(const NdtCell& cell);
+
+  float mean_from_centre[3];    ///< m
+  float inverse_covariance[6];  ///< 1/m^2: xx xy xz yy yz zz
+  float weight;                 ///< w_target of the paper
+  float mean_confidence;
 };
 
 /// The voxels of one resolution that have a distribution, in flat arrays.
@@ -36,6 +46,7 @@ class NdtLevel {
 
   const VoxelIndex& index() const { return index_; }
   const std::vector<NdtCell>& cells() const { return cells_; }
+  const std::vector<PackedNdtCell>& packedCells() const { return packed_cells_; }
 
   /// Everything about voxel `i`, 0 <= i < size().
   VoxelStatistics voxel(std::size_t i) const;
@@ -45,6 +56,7 @@ class NdtLevel {
  private:
   double resolution_m_ = 1.0;
   std::vector<NdtCell> cells_;
+  std::vector<PackedNdtCell> packed_cells_;
   std::vector<VoxelCoordinate> voxels_;
   std::vector<std::uint64_t> point_counts_;
   std::vector<StructureClass> structure_classes_;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "saw_ndt/common/geometry.h"
+#include "saw_ndt/registration/likelihoods.h"
 #include "saw_ndt/registration/ndt_objective.h"
 #include "saw_ndt/registration/score_function.h"
 
@@ -14,6 +15,12 @@ enum class Optimizer {
   NEWTON_MORE_THUENTE,  ///< PCL's: Newton steps in Euler angles with the line search of More and Thuente (1994)
 };
 
+/// How score and derivatives are computed.
+enum class Arithmetic {
+  SINGLE,  ///< single precision and the processor's vector instructions; within about 1e-6 of DOUBLE
+  DOUBLE,  ///< plain double precision, tens of times slower: to compare with, and for voxels of less than a millimetre
+};
+
 struct AlignmentOptions {
   NeighborhoodSearchMethod neighborhood_search = NeighborhoodSearchMethod::DIRECT7;
   ScoreFunction score_function = ScoreFunction::Magnusson;
@@ -21,6 +28,7 @@ struct AlignmentOptions {
   bool use_weights = true;        ///< false, or a source or map without labels: classical NDT, W = 1
   double mismatch_penalty = 0.1;  ///< lambda_m of the paper, in [0, 1]
 
+  Arithmetic arithmetic = Arithmetic::SINGLE;
   Optimizer optimizer = Optimizer::DAMPED_NEWTON;
   int max_iterations = 35;              ///< steps on the fine level, 1 or more
   double translation_epsilon_m = 1e-3;  ///< converged when a step is shorter than this (m) ...
@@ -38,6 +46,8 @@ struct AlignmentOptions {
 
   double line_search_max_step = 0.1;   ///< NEWTON_MORE_THUENTE: longest step, metres and radians in one norm
   double line_search_min_step = 1e-6;  ///< NEWTON_MORE_THUENTE: shortest step; not above the epsilons
+
+  bool evaluate_likelihoods = false;  ///< fill AlignmentResult::likelihoods, which costs a fraction of an evaluation
 
   int threads = 0;  ///< 0: all cores
 
@@ -63,6 +73,8 @@ struct AlignmentResult {
   int evaluations = 0;  ///< evaluations of score, gradient and Hessian on either level
   double score = 0.0;   ///< at the pose of the last evaluation, less than the epsilons from T_map_source if converged
   double likelihood = 0.0;  ///< score / number of source points, as PCL; it changes with the weights
+  /// Of the final pose, where AlignmentOptions::evaluate_likelihoods asks for them; with PCL's outlier ratio.
+  Likelihoods likelihoods;
   /// Curvature of the score by (v, w), see NdtDerivatives; what the step was solved with, positive semidefinite.
   Matrix6d information = Matrix6d::Zero();
 

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 
 #include "saw_ndt/map/ndt_level.h"
-#include "saw_ndt/registration/ndt_objective.h"
+#include "saw_ndt/registration/batch_workspace.h"
+#include "saw_ndt/registration/ordered_source.h"
+#include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {
 
@@ -15,7 +17,10 @@ struct Likelihoods {
   double nearest_voxel = 0.0;  ///< mean over the points that meet a voxel of the score of their best voxel
 };
 
-/// Deterministic for any number of threads.
+/// In single precision; the same bits for any number of threads.
+Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
+                                double outlier_ratio, int threads, BatchWorkspace& workspace);
+/// The same for points in any order.
 Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& source,
                                 const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads);
 

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <functional>
+
 #include "saw_ndt/map/weighted_voxel_map.h"
 #include "saw_ndt/registration/alignment.h"
+#include "saw_ndt/registration/batch_workspace.h"
+#include "saw_ndt/registration/ordered_source.h"
 
 namespace saw_ndt {
 
@@ -19,6 +23,15 @@ class NdtAligner {
                           const Eigen::Isometry3d& T_map_source, const AlignmentOptions& options);
 
  private:
+  /// Score and derivatives of every `stride`-th source point on a level; refers to all that it is given.
+  std::function<NdtDerivatives(const Eigen::Isometry3d&)> evaluationOn(const NdtLevel& level,
+                                                                       const WeightedVoxelMap& map,
+                                                                       const SourcePoints& source, std::size_t stride,
+                                                                       const AlignmentOptions& options);
+
+  OrderedSource ordered_;
+  OrderedSource thinned_;
+  BatchWorkspace batches_;
   NdtObjective::Workspace workspace_;
 };
 

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "saw_ndt/map/voxel_weighting.h"
+#include "saw_ndt/registration/source_points.h"
+
+namespace saw_ndt {
+
+struct BatchPoints;
+
+/// Source points in an order in which those that meet the same voxel of a map follow each other, so that matching looks
+/// a voxel up, and loads it, once for all of them: column by column of the source's own space, and voxel by voxel
+/// within batches of points, which matching sees to wherever a pose has mixed them up. The order is a matter of speed
+/// alone. Memory is kept between uses.
+class OrderedSource {
+ public:
+  /// Takes points over.
+  /// @param resolution_m  edge of a voxel of the map
+  /// @param confidence    s of a point by its label
+  void order(const SourcePoints& source, double resolution_m, const ConfidenceOptions& confidence);
+  /// Takes over every `stride`-th point of another.
+  void thin(const OrderedSource& source, std::size_t stride);
+
+  std::size_t size() const { return size_; }
+
+  /// Coordinates (m, source frame), labels and confidences; behind the last point there is room for vectors.
+  const float* x() const { return x_.data(); }
+  const float* y() const { return y_.data(); }
+  const float* z() const { return z_.data(); }
+  const std::uint8_t* label() const { return label_.data(); }
+  const float* confidence() const { return confidence_.data(); }
+
+  /// Whether so many runs are many more than the batch that begins at point `first` had when it was last put in order.
+  bool mixedUp(std::size_t first, std::size_t run_count) const;
+  /// Puts the points of a batch, which begins at point `first`, in an order in which runs of one voxel follow each
+  /// other. Different batches may be put in order at the same time.
+  void regroup(std::size_t first, const BatchPoints& batch);
+
+ private:
+  void resize(std::size_t size);
+
+  std::size_t size_ = 0;
+  std::vector<float> x_, y_, z_, confidence_;
+  std::vector<std::uint8_t> label_;
+  std::vector<std::uint32_t> groups_of_batch_;  // 0: not put in order yet
+  std::vector<std::uint16_t> columns_;
+  std::vector<std::uint32_t> places_;
+};
+
+}  // namespace saw_ndt

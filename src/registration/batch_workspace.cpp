@@ -1,0 +1,18 @@
+#include "saw_ndt/registration/batch_workspace.h"
+
+#include "registration/voxel_runs.h"
+
+namespace saw_ndt {
+
+BatchWorkspace::BatchWorkspace() = default;
+BatchWorkspace::~BatchWorkspace() = default;
+BatchWorkspace::BatchWorkspace(const BatchWorkspace&) {}
+BatchWorkspace& BatchWorkspace::operator=(const BatchWorkspace&) { return *this; }
+
+void BatchWorkspace::prepare(int threads) {
+  while (scratch_of_thread.size() < static_cast<std::size_t>(threads)) {
+    scratch_of_thread.push_back(std::make_unique<BatchScratch>());
+  }
+}
+
+}  // namespace saw_ndt

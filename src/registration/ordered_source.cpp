@@ -1,0 +1,134 @@
+#include "saw_ndt/registration/ordered_source.h"
+
+#include <algorithm>
+#include <array>
+
+#include "registration/ndt_kernel.h"
+
+namespace saw_ndt {
+namespace {
+
+// Behind the last point, for vectors that reach beyond it.
+constexpr std::size_t kRoomBehind = 2 * kMostLanes;
+
+// A column is as wide as so many voxels: wide enough that a batch holds whole voxels of several columns.
+constexpr double kVoxelsPerColumn = 8.0;
+
+// Which voxels the runs of a batch lie in, numbered as they are met.
+class VoxelGroups {
+ public:
+  std::uint16_t groupOf(std::int32_t x, std::int32_t y, std::int32_t z) {
+    const std::uint32_t hash = static_cast<std::uint32_t>(x) * 0x9E3779B1U +
+                               static_cast<std::uint32_t>(y) * 0x85EBCA77U +
+                               static_cast<std::uint32_t>(z) * 0xC2B2AE3DU;
+    std::size_t slot = (hash ^ (hash >> 15)) & kMask;
+    while (slots_[slot] != 0) {
+      const std::array<std::int32_t, 3>& voxel = voxels_[slots_[slot] - 1U];
+      if (voxel[0] == x && voxel[1] == y && voxel[2] == z) return static_cast<std::uint16_t>(slots_[slot] - 1U);
+      slot = (slot + 1) & kMask;
+    }
+    voxels_[count_] = {x, y, z};
+    slots_[slot] = ++count_;
+    return static_cast<std::uint16_t>(count_ - 1U);
+  }
+  std::uint16_t count() const { return count_; }
+
+ private:
+  static constexpr std::size_t kMask = 4 * kPointsPerBatch - 1;
+
+  std::array<std::uint16_t, kMask + 1> slots_{};
+  std::array<std::array<std::int32_t, 3>, kPointsPerBatch> voxels_;
+  std::uint16_t count_ = 0;
+};
+
+template <typename Value>
+void permute(Value* values, const std::array<std::uint16_t, kPointsPerBatch>& from, std::size_t count) {
+  std::array<Value, kPointsPerBatch> permuted;
+  for (std::size_t i = 0; i < count; ++i) permuted[i] = values[from[i]];
+  std::copy_n(permuted.begin(), count, values);
+}
+
+}  // namespace
+
+void OrderedSource::resize(std::size_t size) {
+  size_ = size;
+  for (std::vector<float>* values : {&x_, &y_, &z_, &confidence_}) {
+    values->resize(size + kRoomBehind);
+    std::fill(values->end() - kRoomBehind, values->end(), 0.0F);
+  }
+  label_.resize(size);
+  groups_of_batch_.assign((size + kPointsPerBatch - 1) / kPointsPerBatch, 0);
+}
+
+void OrderedSource::order(const SourcePoints& source, double resolution_m, const ConfidenceOptions& confidence) {
+  resize(source.size());
+  columns_.resize(size_);
+  findColumns(source.x.data(), source.y.data(), size_, static_cast<float>(1.0 / (kVoxelsPerColumn * resolution_m)),
+              columns_.data());
+  places_.assign(kColumnKeys, 0);
+  for (const std::uint16_t column : columns_) ++places_[column];
+  std::uint32_t begin = 0;
+  for (std::uint32_t& place : places_) {
+    const std::uint32_t count = place;
+    place = begin;
+    begin += count;
+  }
+  std::array<float, kStructuralLabelCount> confidence_of_label;
+  for (int label = 0; label < kStructuralLabelCount; ++label) {
+    confidence_of_label[label] = static_cast<float>(confidence.of(static_cast<StructuralLabel>(label)));
+  }
+  for (std::size_t i = 0; i < size_; ++i) {
+    const std::uint32_t place = places_[columns_[i]]++;
+    x_[place] = source.x[i];
+    y_[place] = source.y[i];
+    z_[place] = source.z[i];
+    label_[place] = source.label[i];
+    confidence_[place] = confidence_of_label[source.label[i]];
+  }
+}
+
+void OrderedSource::thin(const OrderedSource& source, std::size_t stride) {
+  resize((source.size() + stride - 1) / stride);
+  for (std::size_t i = 0; i < size_; ++i) {
+    x_[i] = source.x_[i * stride];
+    y_[i] = source.y_[i * stride];
+    z_[i] = source.z_[i * stride];
+    label_[i] = source.label_[i * stride];
+    confidence_[i] = source.confidence_[i * stride];
+  }
+}
+
+bool OrderedSource::mixedUp(std::size_t first, std::size_t run_count) const {
+  const std::uint32_t groups = groups_of_batch_[first / kPointsPerBatch];
+  return groups == 0 || 4 * run_count > 5 * groups + 16;
+}
+
+void OrderedSource::regroup(std::size_t first, const BatchPoints& batch) {
+  VoxelGroups groups;
+  std::array<std::uint16_t, kPointsPerBatch> group_of_run;
+  std::array<std::uint16_t, kPointsPerBatch> places{};
+  for (std::size_t run = 0; run < batch.run_count; ++run) {
+    const auto start = static_cast<std::size_t>(batch.run_starts[run]);
+    const std::uint16_t group = groups.groupOf(batch.voxel[0][start], batch.voxel[1][start], batch.voxel[2][start]);
+    group_of_run[run] = group;
+    places[group] = static_cast<std::uint16_t>(places[group] + batch.run_starts[run + 1] - batch.run_starts[run]);
+  }
+  std::uint16_t begin = 0;
+  for (std::size_t group = 0; group < groups.count(); ++group) {
+    const std::uint16_t size = places[group];
+    places[group] = begin;
+    begin = static_cast<std::uint16_t>(begin + size);
+  }
+  std::array<std::uint16_t, kPointsPerBatch> from;
+  for (std::size_t run = 0; run < batch.run_count; ++run) {
+    for (auto i = batch.run_starts[run]; i < batch.run_starts[run + 1]; ++i) {
+      from[places[group_of_run[run]]++] = static_cast<std::uint16_t>(i);
+    }
+  }
+  const auto count = static_cast<std::size_t>(batch.run_starts[batch.run_count]);
+  for (std::vector<float>* values : {&x_, &y_, &z_, &confidence_}) permute(values->data() + first, from, count);
+  permute(label_.data() + first, from, count);
+  groups_of_batch_[first / kPointsPerBatch] = groups.count();
+}
+
+}  // namespace saw_ndt

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "registration/ndt_kernel.h"
+#include "saw_ndt/registration/ndt_objective.h"
+
+namespace saw_ndt {
+
+/// What the inner loops need to know of a level, a score function and weights.
+PairParameters pairParameters(const NdtLevel& level, NeighborhoodSearchMethod method, const ScoreParameters& score,
+                              const PairWeighting& weighting);
+
+}  // namespace saw_ndt

@@ -1,0 +1,85 @@
+#include "registration/voxel_runs.h"
+
+namespace saw_ndt {
+namespace {
+
+template <NeighborhoodSearchMethod method>
+constexpr std::array<Neighbour, kNeighbourCount<method>> kNeighbours = neighbours<method>();
+
+}  // namespace
+
+AnchoredPose::AnchoredPose(const Eigen::Isometry3d& T_map_source, double resolution_m) {
+  const Eigen::Vector3d origin_voxel = (T_map_source.translation() / resolution_m).array().floor();
+  const Eigen::Vector3d translation = T_map_source.translation() - origin_voxel * resolution_m;
+  origin = origin_voxel.cast<int>();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      pose.rotation[3 * row + column] = static_cast<float>(T_map_source.linear()(row, column));
+    }
+    pose.translation[row] = static_cast<float>(translation[row]);
+  }
+  pose.resolution_m = static_cast<float>(resolution_m);
+  pose.inverse_resolution = static_cast<float>(1.0 / resolution_m);
+}
+
+VoxelRuns::VoxelRuns(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source)
+    : level_(level) {
+  const auto take = [this, &level](const auto& all) {
+    const auto resolution_m = static_cast<float>(level.resolution());
+    for (const Neighbour& n : all) {
+      shifts_[neighbour_count_++] = {n.offset, static_cast<float>(n.dx) * resolution_m,
+                                     static_cast<float>(n.dy) * resolution_m, static_cast<float>(n.dz) * resolution_m};
+    }
+  };
+  switch (method) {
+    case NeighborhoodSearchMethod::DIRECT1:
+      take(kNeighbours<NeighborhoodSearchMethod::DIRECT1>);
+      break;
+    case NeighborhoodSearchMethod::DIRECT7:
+      take(kNeighbours<NeighborhoodSearchMethod::DIRECT7>);
+      break;
+    case NeighborhoodSearchMethod::DIRECT26:
+    case NeighborhoodSearchMethod::RADIUS:
+      take(kNeighbours<NeighborhoodSearchMethod::DIRECT26>);
+      break;
+  }
+  const AnchoredPose anchored(T_map_source, level.resolution());
+  origin_ = anchored.origin;
+  pose_ = anchored.pose;
+}
+
+void VoxelRuns::find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) {
+  BatchPoints& points = scratch.points;
+  const auto transform = [&] {
+    transformBatch(source.x() + first, source.y() + first, source.z() + first, count, pose_, points);
+  };
+  transform();
+  if (source.mixedUp(first, points.run_count)) {
+    source.regroup(first, points);
+    transform();
+  }
+  const PackedNdtCell* const cells = level_.packedCells().data();
+  RunVoxel* voxel = scratch.voxels.voxels;
+  for (std::size_t run = 0; run < points.run_count; ++run) {
+    scratch.voxels.first[run] = static_cast<std::uint32_t>(voxel - scratch.voxels.voxels);
+    const auto start = static_cast<std::size_t>(points.run_starts[run]);
+    const VoxelCoordinate own(points.voxel[0][start], points.voxel[1][start], points.voxel[2][start]);
+    const std::int32_t* const numbers = level_.index().cell(own + origin_, cursor_);
+    if (numbers == nullptr) continue;
+    // Whether a neighbour exists is as good as random: each is written, and kept by moving on. Voxel 0 stands for none.
+    for (std::size_t n = 0; n < neighbour_count_; ++n) {
+      const Shift& shift = shifts_[n];
+      const std::int32_t number = numbers[shift.offset];
+      const std::int32_t kept = number & ~(number >> 31);
+      const float* const mean = cells[kept].mean_from_centre;
+      voxel->mean[0] = mean[0] + shift.x_m;
+      voxel->mean[1] = mean[1] + shift.y_m;
+      voxel->mean[2] = mean[2] + shift.z_m;
+      voxel->number = static_cast<std::uint32_t>(kept);
+      voxel += number >= 0 ? 1 : 0;
+    }
+  }
+  scratch.voxels.first[points.run_count] = static_cast<std::uint32_t>(voxel - scratch.voxels.voxels);
+}
+
+}  // namespace saw_ndt

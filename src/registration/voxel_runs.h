@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "registration/ndt_kernel.h"
+#include "registration/voxel_pairs.h"
+#include "saw_ndt/registration/batch_workspace.h"
+#include "saw_ndt/registration/ordered_source.h"
+
+namespace saw_ndt {
+
+/// Scratch memory of one thread.
+struct BatchScratch {
+  BatchPoints points{};
+  BatchVoxels voxels{};
+  BatchSums sums{};
+};
+
+/// Sums over a batch of points towards Likelihoods.
+struct LikelihoodSums {
+  double all = 0.0, non_ground = 0.0, best = 0.0;
+  std::size_t non_ground_points = 0, matched_points = 0;
+};
+
+/// Moves batches of source points to a map level and finds the voxels that each run of points pairs with. One a thread.
+class VoxelRuns {
+ public:
+  /// @param level  is referred to, not copied
+  VoxelRuns(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source);
+
+  /// Fills points and voxels of the scratch memory from `count` points of the source, at most kPointsPerBatch.
+  /// Puts them in a better order first where runs are short.
+  void find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch);
+
+ private:
+  /// Where a neighbour lies in the index, and in space (m).
+  struct Shift {
+    std::ptrdiff_t offset;
+    float x_m, y_m, z_m;
+  };
+
+  const NdtLevel& level_;
+  std::array<Shift, kMostNeighbours> shifts_{};
+  std::size_t neighbour_count_ = 0;
+  VoxelCoordinate origin_;
+  BatchPose pose_;
+  VoxelIndex::Cursor cursor_;
+};
+
+/// The pose of a batch, and the voxel that its positions are taken from: the one that holds the source's origin.
+struct AnchoredPose {
+  AnchoredPose(const Eigen::Isometry3d& T_map_source, double resolution_m);
+  VoxelCoordinate origin;
+  BatchPose pose;
+};
+
+}  // namespace saw_ndt
