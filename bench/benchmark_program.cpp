@@ -40,21 +40,18 @@ void registerForEachInstructionSet(const std::string& stage_and_what,
 }
 
 void setTimePer(benchmark::State& state, const std::string& name, std::size_t count) {
-  // A rate of units of 1e-9 is, inverted, in nanoseconds.
-  state.counters["ns_per_" + name] = benchmark::Counter(
-      1e-9 * static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["time_per_" + name] = benchmark::Counter(
+      static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-int runBenchmarkProgram(int argc, char** argv, const std::function<void()>& register_benchmarks) {
+namespace {
+
+int run(int argc, char** argv, const std::function<void()>& add_context_and_benchmarks) {
   try {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-    benchmark::AddCustomContext("data", benchmarkSequenceDescription() + ", scan " +
-                                            std::to_string(benchmarkScanNumber()) + " in the map of " +
-                                            std::to_string(benchmarkMapScans().size()) + " others");
-    benchmark::AddCustomContext("points", std::to_string(benchmarkScan().size()));
     benchmark::AddCustomContext("instruction_set", toString(instructionSet()));
-    register_benchmarks();
+    add_context_and_benchmarks();
     benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
     return 0;
@@ -62,6 +59,25 @@ int runBenchmarkProgram(int argc, char** argv, const std::function<void()>& regi
     std::cerr << argv[0] << ": " << error.what() << "\n";
     return 1;
   }
+}
+
+}  // namespace
+
+int runBenchmarkProgram(int argc, char** argv, const std::function<void()>& register_benchmarks) {
+  return run(argc, argv, [&] {
+    benchmark::AddCustomContext("data", benchmarkSequenceDescription() + ", scan " +
+                                            std::to_string(benchmarkScanNumber()) + " in the map of " +
+                                            std::to_string(benchmarkMapScans().size()) + " others");
+    benchmark::AddCustomContext("points", std::to_string(benchmarkScan().size()));
+    register_benchmarks();
+  });
+}
+
+int runSyntheticBenchmarkProgram(int argc, char** argv, const std::function<void()>& register_benchmarks) {
+  return run(argc, argv, [&] {
+    benchmark::AddCustomContext("data", "synthetic");
+    register_benchmarks();
+  });
 }
 
 }  // namespace saw_ndt

@@ -37,11 +37,14 @@ void registerForEachInstructionSet(const std::string& stage_and_what,
                                    const std::function<void(benchmark::State& state, int threads)>& run,
                                    const std::vector<int>& thread_counts = benchmarkThreadCounts());
 
-/// Sets the counter "ns_per_NAME": time an iteration, spread over `count`.
+/// Sets the counter "time_per_NAME": the time of an iteration, spread over `count` (s; the console writes ns or so).
 void setTimePer(benchmark::State& state, const std::string& name, std::size_t count);
 
 /// main() of a Google Benchmark program: reads its command line, states the data, its size and the instruction set in
 /// use, registers and runs the benchmarks. Returns the exit code; an exception is one line on stderr and 1.
 int runBenchmarkProgram(int argc, char** argv, const std::function<void()>& register_benchmarks);
+
+/// The same for a program that makes its own data.
+int runSyntheticBenchmarkProgram(int argc, char** argv, const std::function<void()>& register_benchmarks);
 
 }  // namespace saw_ndt

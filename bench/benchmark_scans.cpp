@@ -132,6 +132,12 @@ const pcl::PointCloud<pcl::PointXYZI>& benchmarkScan() {
   return scan;
 }
 
+pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkScanPoints() {
+  auto points = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (const pcl::PointXYZI& point : benchmarkScan()) points->emplace_back(point.x, point.y, point.z);
+  return points;
+}
+
 const Eigen::Isometry3d& benchmarkPose() { return benchmarkPoses()[static_cast<std::size_t>(benchmarkScanNumber())]; }
 
 const WeightedVoxelMap& benchmarkMap() {

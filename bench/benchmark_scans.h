@@ -4,6 +4,7 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,10 +33,14 @@ const std::vector<int>& benchmarkMapScans();
 int benchmarkScanNumber();
 /// That scan (LiDAR frame).
 const pcl::PointCloud<pcl::PointXYZI>& benchmarkScan();
+/// The same as PCL's registration takes it.
+pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkScanPoints();
 /// Its reference pose, T_map_lidar.
 const Eigen::Isometry3d& benchmarkPose();
 /// The map of benchmarkMapScans(), 1 m voxels, labelled, with default weighting; see WeightedVoxelMap::reweighted().
 const WeightedVoxelMap& benchmarkMap();
+/// For benchmarkTarget(): all of it.
+constexpr std::size_t kWholeTarget = std::numeric_limits<std::size_t>::max();
 /// The points of benchmarkMapScans() in the map frame, the first `most` of them.
 pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkTarget(std::size_t most);
 /// What a Localizer of this method registers of a scan (LiDAR frame): labelled, ground thinned, 0.2 m source voxels.
