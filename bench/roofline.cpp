@@ -114,7 +114,7 @@ Processor measureProcessor(int threads) {
   processor.l1_bytes = readBytes(threads, l1 / 2);
   processor.l2_bytes = readBytes(threads, l2 / 2);
   processor.l3_bytes = readBytes(threads, std::max(2 * l2, std::min<std::size_t>(l3 / 4, 16 << 20)));
-  processor.memory_bytes = readBytes(threads, 4 * l3 / static_cast<std::size_t>(threads));
+  processor.memory_bytes = readBytes(threads, 2 * l3 / static_cast<std::size_t>(threads));
   processor.l1_gathered = gathered(threads, l1 / 4);
   processor.l2_gathered = gathered(threads, l2 / 2);
   const std::vector<float> values(kGathered, 1.0F);
