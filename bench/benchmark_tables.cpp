@@ -49,7 +49,7 @@ struct Row {
 
 struct Program {
   std::string title;
-  std::vector<Row> rows;                                    // in the order of the file
+  std::vector<Row> rows;                                    // in the order of the program
   std::vector<std::pair<std::string, Measurement>> of_pcl;  // stage without "pcl/", likewise
 };
 
@@ -126,7 +126,12 @@ Program read(const std::string& path) {
     program.title.erase(0, program.title.find_last_of('/') + 1);
     program.title += ": " + context.value("data", "");
     if (context.contains("points")) program.title += ", " + context.at("points").get<std::string>() + " points";
-    for (const nlohmann::json& benchmark : file.at("benchmarks")) {
+    // In the order of the program, whatever order they were run in.
+    std::vector<nlohmann::json> benchmarks = file.at("benchmarks");
+    std::stable_sort(benchmarks.begin(), benchmarks.end(), [](const nlohmann::json& first, const nlohmann::json& next) {
+      return first.value("family_index", 0) < next.value("family_index", 0);
+    });
+    for (const nlohmann::json& benchmark : benchmarks) {
       if (benchmark.value("error_occurred", false)) {
         throw saw_ndt::Error(
             path, "", benchmark.at("name").get<std::string>() + " failed: " + benchmark.value("error_message", ""));

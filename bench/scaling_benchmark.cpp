@@ -2,6 +2,7 @@
 // points, and not at all with the map around them.
 
 #include <map>
+#include <utility>
 
 #include "benchmark_program.h"
 #include "saw_ndt/registration/ndt_aligner.h"
@@ -14,6 +15,7 @@ using Source = saw_ndt::SourcePoints (*)(std::size_t point_count);
 constexpr std::size_t kPoints = 16384;       // where the map grows
 constexpr std::size_t kMapVoxels = 100000;   // where the source grows
 constexpr std::size_t kBlockVoxels = 10000;  // a map that holds all that a scan sees
+constexpr std::size_t kMostVoxels = 10000000;
 
 const saw_ndt::WeightedVoxelMap& mapOf(std::size_t voxel_count) {
   static std::map<std::size_t, saw_ndt::WeightedVoxelMap> maps;
@@ -61,17 +63,19 @@ void add(const std::string& stage_and_size, Benchmark run, Source make, std::siz
 }
 
 void addAll() {
-  for (std::size_t points = 1024; points <= 131072; points *= 2) {
-    add("evaluate/points:" + std::to_string(points), evaluate, saw_ndt::cityScan, points, kMapVoxels);
-    add("align/points:" + std::to_string(points), align, saw_ndt::cityScan, points, kMapVoxels);
+  for (const auto& [stage, run] : {std::pair<std::string, Benchmark>("evaluate", evaluate), {"align", align}}) {
+    for (std::size_t points = 1024; points <= 131072; points *= 2) {
+      add(stage + "/points:" + std::to_string(points), run, saw_ndt::cityScan, points, kMapVoxels);
+    }
   }
-  for (std::size_t voxels = 10; voxels <= 10000000; voxels *= 10) {
-    // A source that the smallest map holds, then one that spreads over a city block.
-    const std::string size = "/map_voxels:" + std::to_string(voxels);
-    add("evaluate_patch" + size, evaluate, saw_ndt::cityPatch, kPoints, voxels);
-    if (voxels < kBlockVoxels) continue;
-    add("evaluate" + size, evaluate, saw_ndt::cityScan, kPoints, voxels);
-    add("align" + size, align, saw_ndt::cityScan, kPoints, voxels);
+  // A source that the smallest map holds, then one that spreads over a city block.
+  for (std::size_t voxels = 10; voxels <= kMostVoxels; voxels *= 10) {
+    add("evaluate_patch/map_voxels:" + std::to_string(voxels), evaluate, saw_ndt::cityPatch, kPoints, voxels);
+  }
+  for (const auto& [stage, run] : {std::pair<std::string, Benchmark>("evaluate", evaluate), {"align", align}}) {
+    for (std::size_t voxels = kBlockVoxels; voxels <= kMostVoxels; voxels *= 10) {
+      add(stage + "/map_voxels:" + std::to_string(voxels), run, saw_ndt::cityScan, kPoints, voxels);
+    }
   }
 }
 
