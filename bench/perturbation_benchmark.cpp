@@ -5,12 +5,12 @@
 #include <pcl/registration/ndt.h>
 
 #include <chrono>
-#include <cmath>
 #include <functional>
 #include <iomanip>
 #include <iostream>
 
 #include "app_options.h"
+#include "perturbed_starts.h"
 #include "progress_bar.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/evaluation/statistics.h"
@@ -23,7 +23,6 @@ namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZI>;
 
-constexpr int kStarts = 10;
 constexpr double kSuccess_m = 0.1;
 constexpr double kSuccess_deg = 0.2;
 
@@ -35,16 +34,6 @@ struct Alignment {
 
 // Aligns one scan from one start.
 using Method = std::function<Alignment(const Cloud& scan, const Eigen::Isometry3d& T_start)>;
-
-// Start k of ten: 0.5 m off in direction k, up, level or down by 0.1 m, turned by one degree to either side.
-Eigen::Isometry3d perturbed(const Eigen::Isometry3d& T_reference, int k) {
-  const double direction = 2.0 * saw_ndt::kPi * k / kStarts;
-  Eigen::Isometry3d T = T_reference;
-  T.translation() += Eigen::Vector3d(0.5 * std::cos(direction), 0.5 * std::sin(direction), 0.1 * (k % 3 - 1));
-  const double yaw = saw_ndt::radiansFromDegrees(k % 2 == 1 ? 1.0 : -1.0);
-  T.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * T.linear();
-  return T;
-}
 
 Method ourMethod(const std::string& name, const saw_ndt::WeightedVoxelMap& map, int threads) {
   saw_ndt::LocalizerOptions options;
@@ -88,8 +77,8 @@ struct Figures {
 void measure(const Method& method, const Cloud& scan, const Eigen::Isometry3d& T_reference, Figures& figures) {
   std::vector<Eigen::Vector3d> positions;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (int k = 0; k < kStarts; ++k) {
-    const Alignment alignment = method(scan, perturbed(T_reference, k));
+  for (int k = 0; k < saw_ndt::kPerturbedStartCount; ++k) {
+    const Alignment alignment = method(scan, saw_ndt::perturbedStart(T_reference, k));
     const double error_m = (alignment.T_map_lidar.translation() - T_reference.translation()).norm();
     const double error_deg = saw_ndt::degreesFromRadians(
         saw_ndt::rotationAngle(T_reference.linear().transpose() * alignment.T_map_lidar.linear()));
@@ -99,7 +88,7 @@ void measure(const Method& method, const Cloud& scan, const Eigen::Isometry3d& T
     figures.error_deg.push_back(error_deg);
     figures.successes += error_m < kSuccess_m && error_deg < kSuccess_deg;
     positions.push_back(alignment.T_map_lidar.translation());
-    mean += positions.back() / kStarts;
+    mean += positions.back() / saw_ndt::kPerturbedStartCount;
   }
   for (const Eigen::Vector3d& position : positions) figures.spread_m.push_back((position - mean).norm());
 }

@@ -6,6 +6,14 @@ function(saw_ndt_set_up_target target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
 endfunction()
 
+# For targets whose files include common/vector_dispatch.h.
+function(saw_ndt_use_vector_dispatch target)
+  target_link_libraries(${target} PRIVATE hwy::hwy)
+  # Three sets of instructions are enough: what every x86-64 has, AVX2, AVX-512.
+  target_compile_definitions(${target} PRIVATE HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL\))
+  target_include_directories(${target} PRIVATE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
+endfunction()
+
 # saw_ndt_add_test(NAME SOURCE...): a GoogleTest program, each of its tests known to CTest by its own name.
 function(saw_ndt_add_test name)
   add_executable(${name} ${ARGN})
