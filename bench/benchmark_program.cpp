@@ -10,7 +10,7 @@ namespace saw_ndt {
 const std::vector<InstructionSet>& availableInstructionSets() {
   static const std::vector<InstructionSet> available = [] {
     std::vector<InstructionSet> sets;
-    for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+    for (const InstructionSet set : kInstructionSets) {
       const InstructionSetLimit limit(set);
       if (instructionSet() == set) sets.push_back(set);
     }

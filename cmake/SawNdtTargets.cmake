@@ -9,8 +9,8 @@ endfunction()
 # For targets whose files include common/vector_dispatch.h.
 function(saw_ndt_use_vector_dispatch target)
   target_link_libraries(${target} PRIVATE hwy::hwy)
-  # Three sets of instructions are enough: what every x86-64 has, AVX2, AVX-512.
-  target_compile_definitions(${target} PRIVATE HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL\))
+  # Four sets of instructions are enough: what every x86-64 has, SSE4, AVX2, AVX-512.
+  target_compile_definitions(${target} PRIVATE HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_AVX3_DL\))
   target_include_directories(${target} PRIVATE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
 endfunction()
 

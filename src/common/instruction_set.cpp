@@ -1,7 +1,6 @@
 #include "saw_ndt/common/instruction_set.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
@@ -12,13 +11,12 @@
 namespace saw_ndt {
 namespace {
 
-constexpr std::array<InstructionSet, 3> kAll = {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512};
-
 // Highway's targets beyond a set.
 std::int64_t targetsBeyond(InstructionSet most) {
 #if HWY_ARCH_X86
   const std::int64_t avx512 = HWY_AVX3 | HWY_AVX3_DL;
-  if (most == InstructionSet::BASELINE) return avx512 | HWY_AVX2;
+  if (most == InstructionSet::BASELINE) return avx512 | HWY_AVX2 | HWY_SSE4 | HWY_SSSE3;
+  if (most == InstructionSet::SSE4) return avx512 | HWY_AVX2;
   if (most == InstructionSet::AVX2) return avx512;
 #else
   static_cast<void>(most);
@@ -57,6 +55,7 @@ InstructionSet instructionSet() {
   const std::int64_t targets = hwy::SupportedTargets();
   if ((targets & HWY_AVX3) != 0) return InstructionSet::AVX512;
   if ((targets & HWY_AVX2) != 0) return InstructionSet::AVX2;
+  if ((targets & HWY_SSE4) != 0) return InstructionSet::SSE4;
 #endif
   return InstructionSet::BASELINE;
 }
@@ -69,6 +68,8 @@ const char* toString(InstructionSet set) {
   switch (set) {
     case InstructionSet::BASELINE:
       return "baseline";
+    case InstructionSet::SSE4:
+      return "sse4";
     case InstructionSet::AVX2:
       return "avx2";
     case InstructionSet::AVX512:
@@ -78,10 +79,10 @@ const char* toString(InstructionSet set) {
 }
 
 InstructionSet instructionSetNamed(const std::string& name) {
-  for (const InstructionSet set : kAll) {
+  for (const InstructionSet set : kInstructionSets) {
     if (name == toString(set)) return set;
   }
-  throw std::invalid_argument("instruction set " + name + ": must be one of baseline avx2 avx512");
+  throw std::invalid_argument("instruction set " + name + ": must be one of baseline sse4 avx2 avx512");
 }
 
 }  // namespace saw_ndt

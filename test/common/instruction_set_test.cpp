@@ -15,7 +15,7 @@ class InstructionSetTest : public testing::Test {
 };
 
 TEST_F(InstructionSetTest, NamesAndBack) {
-  for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+  for (const InstructionSet set : kInstructionSets) {
     EXPECT_EQ(instructionSetNamed(toString(set)), set);
   }
   EXPECT_THROW(instructionSetNamed("sse9"), std::invalid_argument);
@@ -23,7 +23,7 @@ TEST_F(InstructionSetTest, NamesAndBack) {
 }
 
 TEST_F(InstructionSetTest, IsNeverBeyondItsLimit) {
-  for (const InstructionSet most : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+  for (const InstructionSet most : kInstructionSets) {
     limitInstructionSet(most);
     EXPECT_LE(instructionSet(), most);
   }

@@ -14,9 +14,6 @@
 namespace saw_ndt {
 namespace {
 
-constexpr std::array<InstructionSet, 3> kInstructionSets = {InstructionSet::BASELINE, InstructionSet::AVX2,
-                                                            InstructionSet::AVX512};
-
 class VectorizedNdtObjectiveTest : public testing::Test {
  protected:
   void TearDown() override { limitInstructionSet(InstructionSet::AVX512); }
