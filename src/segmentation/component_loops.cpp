@@ -1,0 +1,88 @@
+#include "segmentation/component_loops.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "segmentation/component_loops.cpp"
+#include "common/vector_dispatch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace saw_ndt {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+void withoutGround(std::size_t count, const float* __restrict range, const std::uint8_t* __restrict ground,
+                   float* __restrict obstacle_range) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t is_ground = ground[i];
+    obstacle_range[i] = is_ground != 0 ? 0.0F : range[i];
+  }
+}
+
+// Where first and second are ranges: false where the nearer is no return, with range 0.
+HWY_INLINE bool connected(float first, float second, float ratio) {
+  const float nearer = first < second ? first : second;
+  const float farther = first < second ? second : first;
+  return nearer * ratio > farther;
+}
+
+HWY_INLINE void link(std::size_t count, float ratio_along, float ratio_across, const float* __restrict range,
+                     const float* __restrict above, std::uint8_t* __restrict links) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t active = range[i + 1] > 0.0F ? kActive : 0;
+    const std::int32_t along = connected(range[i + 1], range[i], ratio_along) ? kLinkedBefore : 0;
+    const std::int32_t across = connected(range[i + 1], above[i], ratio_across) ? kLinkedAbove : 0;
+    links[i] = static_cast<std::uint8_t>(active + along + across);
+  }
+}
+
+void linkRow(std::size_t count, const ConnectionRatios& ratios, const float* range, const float* above,
+             std::uint8_t* links) {
+  link(count, ratios.along, ratios.across, range, above, links);
+}
+
+void packBits(std::size_t words, const std::uint8_t* links, std::uint64_t* active, std::uint64_t* linked_before,
+              std::uint64_t* linked_above) {
+  const hn::ScalableTag<std::uint8_t> d;
+  const auto active_bit = hn::Set(d, kActive);
+  const auto before_bit = hn::Set(d, kLinkedBefore);
+  const auto above_bit = hn::Set(d, kLinkedAbove);
+  auto* const active_bytes = reinterpret_cast<std::uint8_t*>(active);
+  auto* const before_bytes = reinterpret_cast<std::uint8_t*>(linked_before);
+  auto* const above_bytes = reinterpret_cast<std::uint8_t*>(linked_above);
+  for (std::size_t i = 0; i < 64 * words; i += hn::Lanes(d)) {
+    const auto of_pixels = hn::LoadU(d, links + i);
+    hn::StoreMaskBits(d, hn::TestBit(of_pixels, active_bit), active_bytes + i / 8);
+    hn::StoreMaskBits(d, hn::TestBit(of_pixels, before_bit), before_bytes + i / 8);
+    hn::StoreMaskBits(d, hn::TestBit(of_pixels, above_bit), above_bytes + i / 8);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace saw_ndt
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace saw_ndt {
+
+HWY_EXPORT(withoutGround);
+HWY_EXPORT(linkRow);
+HWY_EXPORT(packBits);
+
+void takeOutGround(std::size_t count, const float* range, const std::uint8_t* ground, float* obstacle_range) {
+  SAW_NDT_DISPATCH(withoutGround)(count, range, ground, obstacle_range);
+}
+
+void linkPixels(std::size_t count, const ConnectionRatios& ratios, const float* range, const float* above,
+                std::uint8_t* links) {
+  SAW_NDT_DISPATCH(linkRow)(count, ratios, range, above, links);
+}
+
+void bitsOfLinks(std::size_t words, const std::uint8_t* links, std::uint64_t* active, std::uint64_t* linked_before,
+                 std::uint64_t* linked_above) {
+  SAW_NDT_DISPATCH(packBits)(words, links, active, linked_before, linked_above);
+}
+
+}  // namespace saw_ndt
+#endif
