@@ -41,21 +41,36 @@ void linkRow(std::size_t count, const ConnectionRatios& ratios, const float* ran
   link(count, ratios.along, ratios.across, range, above, links);
 }
 
+#if HWY_TARGET == HWY_SCALAR
+// The bits `flag` of eight bytes.
+HWY_INLINE std::uint8_t bitsOfEight(std::uint64_t bytes, std::uint8_t flag) {
+  const std::uint64_t one_each = (bytes / flag) & 0x0101010101010101U;
+  return static_cast<std::uint8_t>(one_each * 0x0102040810204080U >> 56);
+}
+#endif
+
 void packBits(std::size_t words, const std::uint8_t* links, std::uint64_t* active, std::uint64_t* linked_before,
               std::uint64_t* linked_above) {
-  const hn::ScalableTag<std::uint8_t> d;
-  const auto active_bit = hn::Set(d, kActive);
-  const auto before_bit = hn::Set(d, kLinkedBefore);
-  const auto above_bit = hn::Set(d, kLinkedAbove);
   auto* const active_bytes = reinterpret_cast<std::uint8_t*>(active);
   auto* const before_bytes = reinterpret_cast<std::uint8_t*>(linked_before);
   auto* const above_bytes = reinterpret_cast<std::uint8_t*>(linked_above);
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t i = 0; i < 8 * words; ++i) {
+    std::uint64_t of_pixels;
+    __builtin_memcpy(&of_pixels, links + 8 * i, sizeof(of_pixels));
+    active_bytes[i] = bitsOfEight(of_pixels, kActive);
+    before_bytes[i] = bitsOfEight(of_pixels, kLinkedBefore);
+    above_bytes[i] = bitsOfEight(of_pixels, kLinkedAbove);
+  }
+#else
+  const hn::ScalableTag<std::uint8_t> d;
   for (std::size_t i = 0; i < 64 * words; i += hn::Lanes(d)) {
     const auto of_pixels = hn::LoadU(d, links + i);
-    hn::StoreMaskBits(d, hn::TestBit(of_pixels, active_bit), active_bytes + i / 8);
-    hn::StoreMaskBits(d, hn::TestBit(of_pixels, before_bit), before_bytes + i / 8);
-    hn::StoreMaskBits(d, hn::TestBit(of_pixels, above_bit), above_bytes + i / 8);
+    hn::StoreMaskBits(d, hn::TestBit(of_pixels, hn::Set(d, kActive)), active_bytes + i / 8);
+    hn::StoreMaskBits(d, hn::TestBit(of_pixels, hn::Set(d, kLinkedBefore)), before_bytes + i / 8);
+    hn::StoreMaskBits(d, hn::TestBit(of_pixels, hn::Set(d, kLinkedAbove)), above_bytes + i / 8);
   }
+#endif
 }
 
 }  // namespace

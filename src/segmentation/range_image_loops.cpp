@@ -13,6 +13,10 @@ namespace saw_ndt {
 namespace HWY_NAMESPACE {
 namespace {
 
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The hardware follows such a stream to the end of a page alone.
+constexpr std::size_t kPointsAhead = 96;
 constexpr std::size_t kBlock = PointMeasurements::kBlock;
 constexpr std::uint16_t kNoColumn = PointMeasurements::kNoColumn;
 constexpr float kTurn = static_cast<float>(2.0 * kPi);
@@ -61,33 +65,50 @@ HWY_INLINE void measureBlock(std::size_t count, const ProjectionGeometry geometr
   }
 }
 
-HWY_INLINE ColumnSpan spanOf(std::size_t count, const std::uint16_t* __restrict column) {
-  std::uint16_t least = kNoColumn;
-  std::uint16_t greatest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint16_t of_return = column[i] == kNoColumn ? std::uint16_t{0} : column[i];
-    least = column[i] < least ? column[i] : least;
-    greatest = of_return > greatest ? of_return : greatest;
+// Of columns that are followed by kNoColumn up to a whole block.
+HWY_INLINE ColumnSpan spanOf(const std::uint16_t* HWY_RESTRICT column) {
+  const hn::CappedTag<std::uint16_t, kBlock> d;
+  const auto one = hn::Set(d, std::uint16_t{1});
+  auto least = hn::Set(d, kNoColumn);
+  auto greatest = hn::Zero(d);  // and one more: kNoColumn then becomes 0
+  for (std::size_t i = 0; i < kBlock; i += hn::Lanes(d)) {
+    const auto columns = hn::Load(d, column + i);
+    least = hn::Min(least, columns);
+    greatest = hn::Max(greatest, hn::Add(columns, one));
   }
-  return {least, greatest};
+  HWY_ALIGN std::uint16_t least_of_lanes[kBlock];
+  HWY_ALIGN std::uint16_t greatest_of_lanes[kBlock];
+  hn::Store(least, d, least_of_lanes);
+  hn::Store(greatest, d, greatest_of_lanes);
+  ColumnSpan span = {kNoColumn, 0};
+  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+    span.least = least_of_lanes[lane] < span.least ? least_of_lanes[lane] : span.least;
+    span.greatest = greatest_of_lanes[lane] > span.greatest ? greatest_of_lanes[lane] : span.greatest;
+  }
+  if (span.greatest > 0) --span.greatest;
+  return span;
 }
 
 void measure(std::size_t count, std::size_t stride, const float* xyz, const ProjectionGeometry& geometry,
              const MeasuredArrays& measured) {
-  float x[kBlock];
-  float y[kBlock];
-  float z[kBlock];
+  HWY_ALIGN float x[kBlock];
+  HWY_ALIGN float y[kBlock];
+  HWY_ALIGN float z[kBlock];
+  HWY_ALIGN std::uint16_t column[kBlock];
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     const std::size_t size = count - begin < kBlock ? count - begin : kBlock;
     const float* point = xyz + begin * stride;
     for (std::size_t i = 0; i < size; ++i, point += stride) {
+      __builtin_prefetch(point + kPointsAhead * stride);
       x[i] = point[0];
       y[i] = point[1];
       z[i] = point[2];
     }
-    measureBlock(size, geometry, x, y, z, measured.column + begin, measured.range + begin,
-                 measured.horizontal_range + begin, measured.height + begin);
-    measured.spans[begin / kBlock] = spanOf(size, measured.column + begin);
+    measureBlock(size, geometry, x, y, z, column, measured.range + begin, measured.horizontal_range + begin,
+                 measured.height + begin);
+    for (std::size_t i = 0; i < size; ++i) measured.column[begin + i] = column[i];
+    for (std::size_t i = size; i < kBlock; ++i) column[i] = kNoColumn;
+    measured.spans[begin / kBlock] = spanOf(column);
   }
 }
 
