@@ -1,7 +1,6 @@
 #include "saw_ndt/localization/source_voxel_filter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,6 +12,8 @@ namespace saw_ndt {
 namespace {
 
 constexpr std::size_t kBlock = SourceVoxelBlock::kSize;
+// The hardware follows the stream of points to the end of a page alone.
+constexpr std::size_t kPointsAhead = 96;
 constexpr int kLeastSlotBits = 17;
 constexpr std::uint64_t kHashFactor = 0x9E3779B97F4A7C15ULL;
 
@@ -43,7 +44,7 @@ const SourcePoints& SourceVoxelFilter::filter(const ScanView& scan, const std::v
                                 " points");
   }
   GroundSampler ground_sampler({selection.ground_ratio});
-  for (int label = 0; label < kStructuralLabelCount; ++label) {
+  for (std::size_t label = 0; label < takes_label_.size(); ++label) {
     takes_label_[label] = selection.confidence.of(static_cast<StructuralLabel>(label)) > 0.0;
   }
   points_.clear();
@@ -69,27 +70,37 @@ const SourcePoints& SourceVoxelFilter::filter(const ScanView& scan, const std::v
 std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, std::size_t end,
                                       const StructuralLabel* labels, GroundSampler& ground_sampler) {
   SourceVoxelBlock& block = *block_;
-  const auto take = [&](std::size_t i, std::size_t place) {
-    const float* const point = scan.point(i);
+  const std::size_t stride = scan.stride;
+  const float* const first = scan.point(begin);
+  const auto read = [&](std::size_t place, std::size_t i) {
+    const float* const point = first + i * stride;
+    __builtin_prefetch(point + kPointsAhead * stride);
     block.x[place] = point[0];
     block.y[place] = point[1];
     block.z[place] = point[2];
   };
+  const std::size_t size = end - begin;
   if (labels == nullptr) {
-    if (!takes_label_[static_cast<int>(StructuralLabel::NonGround)]) return 0;
-    for (std::size_t i = begin; i < end; ++i) take(i, i - begin);
-    std::fill_n(block.label, end - begin, static_cast<std::uint8_t>(StructuralLabel::NonGround));
-    return end - begin;
+    if (!takes_label_[static_cast<std::size_t>(StructuralLabel::NonGround)]) return 0;
+    for (std::size_t i = 0; i < size; ++i) read(i, i);
+    std::fill_n(block.label, size, static_cast<std::uint8_t>(StructuralLabel::NonGround));
+    return size;
   }
   // Which points are taken changes too often to be a branch: one that is not is overwritten by the next.
+  std::array<std::uint16_t, kBlock> taken;
+  const std::array<bool, kStructuralLabelCount> takes_label = takes_label_;
+  GroundSampler sampler = ground_sampler;
   std::size_t count = 0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const auto label = static_cast<std::uint8_t>(labels[i]);
-    take(i, count);
-    block.label[count] = label;
-    const bool sampled = ground_sampler.keepsNext(takes_label_[label] & (labels[i] == StructuralLabel::Ground));
-    count += static_cast<std::size_t>(takes_label_[label] & sampled);
+  for (std::size_t i = 0; i < size; ++i) {
+    const StructuralLabel label = labels[begin + i];
+    const bool takes = takes_label[static_cast<std::size_t>(label)];
+    taken[count] = static_cast<std::uint16_t>(i);
+    block.label[count] = static_cast<std::uint8_t>(label);
+    const bool sampled = sampler.keepsNext(takes & (label == StructuralLabel::Ground));
+    count += static_cast<std::size_t>(takes & sampled);
   }
+  ground_sampler = sampler;
+  for (std::size_t place = 0; place < count; ++place) read(place, taken[place]);
   return count;
 }
 
@@ -114,26 +125,49 @@ void SourceVoxelFilter::growTable() {
   slots_.assign(std::size_t{1} << (64 - hash_shift_), 0);
   keys_.resize(slots_.size() / 2 + 1);
   offset_sums_.resize(4 * keys_.size());
-  const std::uint32_t voxels = voxel_count_;
   first_number_ = 1;
-  for (voxel_count_ = 0; voxel_count_ < voxels;) numberOf(keys_[voxel_count_]);
-}
-
-inline std::uint32_t SourceVoxelFilter::numberOf(std::uint64_t key) {
   const std::size_t mask = slots_.size() - 1;
-  keys_[voxel_count_] = key;
-  for (std::size_t slot = key * kHashFactor >> hash_shift_;; slot = (slot + 1) & mask) {
-    // A voxel is as often new as not: no branch, but the number of the next one where the slot is empty.
-    const std::uint32_t held = slots_[slot] - first_number_;
-    const std::uint32_t number = held < voxel_count_ ? held : voxel_count_;
-    if (keys_[number] != key) continue;
-    slots_[slot] = first_number_ + number;
-    voxel_count_ += static_cast<std::uint32_t>(number == voxel_count_);
-    return number;
+  for (std::uint32_t voxel = 0; voxel < voxel_count_; ++voxel) {
+    std::size_t slot = keys_[voxel] * kHashFactor >> hash_shift_;
+    while (slots_[slot] != 0) slot = (slot + 1) & mask;
+    slots_[slot] = first_number_ + voxel;
   }
 }
 
+void SourceVoxelFilter::numberVoxels(std::size_t count, const std::uint64_t* keys, std::uint32_t* numbers) {
+  while (voxel_count_ + count > slots_.size() / 2) growTable();
+  std::uint32_t* const slots = slots_.data();
+  std::uint64_t* const known_keys = keys_.data();
+  float* const offset_sums = offset_sums_.data();
+  const std::size_t mask = slots_.size() - 1;
+  const int hash_shift = hash_shift_;
+  const std::uint32_t first_number = first_number_;
+  std::uint32_t voxel_count = voxel_count_;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t key = keys[i];
+    if (key == kNoVoxel) {
+      numbers[i] = static_cast<std::uint32_t>(keys_.size() - 1);  // of no voxel
+      continue;
+    }
+    // A voxel is as often new as not, so that must not be a branch: the next new one is made ready, and taken where the
+    // slot is empty.
+    known_keys[voxel_count] = key;
+    std::fill_n(offset_sums + 4 * std::size_t{voxel_count}, 4, 0.0F);
+    std::size_t slot = key * kHashFactor >> hash_shift;
+    std::uint32_t number = std::min(slots[slot] - first_number, voxel_count);
+    while (known_keys[number] != key) {
+      slot = (slot + 1) & mask;
+      number = std::min(slots[slot] - first_number, voxel_count);
+    }
+    slots[slot] = first_number + number;
+    voxel_count += static_cast<std::uint32_t>(number == voxel_count);
+    numbers[i] = number;
+  }
+  voxel_count_ = voxel_count;
+}
+
 void SourceVoxelFilter::addToVoxels(std::size_t count) {
+  if (count == 0) return;
   SourceVoxelBlock& block = *block_;
   findVoxels(count, static_cast<float>(voxel_size_m_), inverse_size_, block);
 
@@ -142,18 +176,15 @@ void SourceVoxelFilter::addToVoxels(std::size_t count) {
   std::array<std::uint16_t, kBlock> ordinals;
   std::array<std::uint32_t, kBlock> numbers;
   std::size_t last = 0;
+  std::uint64_t previous = block.keyAt(0);
   for (std::size_t i = 0; i < count; ++i) {
-    last += static_cast<std::size_t>(i > 0 && block.key[i] != keys[last]);
-    keys[last] = block.key[i];
+    const std::uint64_t key = block.keyAt(i);
+    last += static_cast<std::size_t>(key != previous);
+    keys[last] = key;
     ordinals[i] = static_cast<std::uint16_t>(last);
+    previous = key;
   }
-  const std::size_t runs = count > 0 ? last + 1 : 0;
-  while (voxel_count_ + kBlock > slots_.size() / 2) growTable();
-  const auto no_voxel = static_cast<std::uint32_t>(keys_.size() - 1);
-  for (std::size_t run = 0; run < runs; ++run) {
-    std::fill_n(offset_sums_.data() + 4 * std::size_t{voxel_count_}, 4, 0.0F);
-    numbers[run] = keys[run] == kNoVoxel ? no_voxel : numberOf(keys[run]);
-  }
+  numberVoxels(last + 1, keys.data(), numbers.data());
   addOffsets(count, block.offset, ordinals.data(), numbers.data(), offset_sums_.data());
 }
 

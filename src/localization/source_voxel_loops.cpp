@@ -11,7 +11,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::uint32_t kAxisBits = 20;
+constexpr int kAxisBits = 20;
 constexpr std::uint32_t kAxisMask = (1U << kAxisBits) - 1;
 
 void transformBlock(std::size_t count, const RigidTransformRows& transform, SourceVoxelBlock& block) {
@@ -29,51 +29,40 @@ void transformBlock(std::size_t count, const RigidTransformRows& transform, Sour
   }
 }
 
-// The greatest whole number that is not above `value`; kFarthestVoxel or more where it is too far or not a number.
-HWY_INLINE float floorOf(float value) {
-  const float near = __builtin_fabsf(value) <= kFarthestVoxel ? value : kFarthestVoxel;
-  const auto truncated = static_cast<float>(static_cast<std::int32_t>(near));
-  return truncated - (truncated > near ? 1.0F : 0.0F);
+// The bits of a voxel's number along one axis; `near` becomes false where it is too far or not a number.
+template <class D, class V, class M>
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<D>> keyOf(D d, V voxel, M& near) {
+  near = hn::And(near, hn::Lt(hn::Abs(voxel), hn::Set(d, kFarthestVoxel)));
+  const auto number = hn::ConvertTo(hn::RebindToSigned<D>(), hn::IfThenElseZero(near, voxel));
+  const hn::RebindToUnsigned<D> du;
+  return hn::And(hn::BitCast(du, number), hn::Set(du, kAxisMask));
 }
 
-HWY_INLINE void keysOf(std::size_t count, float size, float inverse_size, const float* __restrict x,
-                       const float* __restrict y, const float* __restrict z, const std::uint8_t* __restrict label,
-                       std::uint32_t* __restrict low, std::uint32_t* __restrict high, float* __restrict offset_x,
-                       float* __restrict offset_y, float* __restrict offset_z) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float voxel_x = floorOf(x[i] * inverse_size);
-    const float voxel_y = floorOf(y[i] * inverse_size);
-    const float voxel_z = floorOf(z[i] * inverse_size);
-    const bool near = (__builtin_fabsf(voxel_x) < kFarthestVoxel) & (__builtin_fabsf(voxel_y) < kFarthestVoxel) &
-                      (__builtin_fabsf(voxel_z) < kFarthestVoxel);
-    const auto key_x = static_cast<std::uint32_t>(static_cast<std::int32_t>(voxel_x)) & kAxisMask;
-    const auto key_y = static_cast<std::uint32_t>(static_cast<std::int32_t>(voxel_y)) & kAxisMask;
-    const auto key_z = static_cast<std::uint32_t>(static_cast<std::int32_t>(voxel_z)) & kAxisMask;
-    const std::uint32_t low_key = key_x | key_y << kAxisBits;
-    const std::uint32_t high_key =
-        key_y >> (32 - kAxisBits) | key_z << (2 * kAxisBits - 32) | std::uint32_t{label[i]} << (3 * kAxisBits - 32);
-    low[i] = near ? low_key : ~0U;
-    high[i] = near ? high_key : ~0U;
-    offset_x[i] = x[i] - voxel_x * size;
-    offset_y[i] = y[i] - voxel_y * size;
-    offset_z[i] = z[i] - voxel_z * size;
-  }
-}
-
-void findBlockVoxels(std::size_t count, float size, float inverse_size, SourceVoxelBlock& block) {
-  constexpr std::size_t kSize = SourceVoxelBlock::kSize;
-  HWY_ALIGN std::uint32_t low[kSize];
-  HWY_ALIGN std::uint32_t high[kSize];
-  HWY_ALIGN float offset_x[kSize];
-  HWY_ALIGN float offset_y[kSize];
-  HWY_ALIGN float offset_z[kSize];
-  keysOf(count, size, inverse_size, block.x, block.y, block.z, block.label, low, high, offset_x, offset_y, offset_z);
-  for (std::size_t i = 0; i < count; ++i) block.key[i] = std::uint64_t{high[i]} << 32 | low[i];
+void findBlockVoxels(std::size_t count, float voxel_size_m, float inverse_size, SourceVoxelBlock& block) {
   const hn::ScalableTag<float> d;
-  const auto one = hn::Set(d, 1.0F);
+  const hn::RebindToUnsigned<decltype(d)> du;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  const auto size = hn::Set(d, voxel_size_m);
+  const auto inverse = hn::Set(d, inverse_size);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    hn::StoreInterleaved4(hn::Load(d, offset_x + i), hn::Load(d, offset_y + i), hn::Load(d, offset_z + i), one, d,
-                          block.offset + 4 * i);
+    const auto x = hn::Load(d, block.x + i);
+    const auto y = hn::Load(d, block.y + i);
+    const auto z = hn::Load(d, block.z + i);
+    const auto voxel_x = hn::Floor(hn::Mul(x, inverse));
+    const auto voxel_y = hn::Floor(hn::Mul(y, inverse));
+    const auto voxel_z = hn::Floor(hn::Mul(z, inverse));
+    auto near = hn::Eq(size, size);
+    const auto key_x = keyOf(d, voxel_x, near);
+    const auto key_y = keyOf(d, voxel_y, near);
+    const auto key_z = keyOf(d, voxel_z, near);
+    const auto label = hn::PromoteTo(du, hn::Load(d8, block.label + i));
+    const auto low = hn::Or(key_x, hn::ShiftLeft<kAxisBits>(key_y));
+    const auto high = hn::Or(hn::ShiftRight<32 - kAxisBits>(key_y),
+                             hn::Or(hn::ShiftLeft<2 * kAxisBits - 32>(key_z), hn::ShiftLeft<3 * kAxisBits - 32>(label)));
+    const auto too_far = hn::Not(hn::VecFromMask(du, hn::RebindMask(du, near)));
+    hn::StoreInterleaved2(hn::Or(low, too_far), hn::Or(high, too_far), du, block.key + 2 * i);
+    hn::StoreInterleaved4(hn::Sub(x, hn::Mul(voxel_x, size)), hn::Sub(y, hn::Mul(voxel_y, size)),
+                          hn::Sub(z, hn::Mul(voxel_z, size)), hn::Set(d, 1.0F), d, block.offset + 4 * i);
   }
 }
 
@@ -87,7 +76,7 @@ void addBlockOffsets(std::size_t count, const float* __restrict offset, const st
 
 // The voxel along one axis, whose sign is in the highest of its bits.
 HWY_INLINE float voxelOf(std::uint32_t key, float size) {
-  constexpr std::int32_t kBeyond = 32 - static_cast<std::int32_t>(kAxisBits);
+  constexpr std::int32_t kBeyond = 32 - kAxisBits;
   return static_cast<float>(static_cast<std::int32_t>(key << kBeyond) >> kBeyond) * size;
 }
 

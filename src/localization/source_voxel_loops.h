@@ -12,9 +12,11 @@ struct SourceVoxelBlock {
   alignas(64) float x[kSize];  ///< m, at last in the frame of the source
   alignas(64) float y[kSize];
   alignas(64) float z[kSize];
-  alignas(64) std::uint8_t label[kSize];    ///< values of StructuralLabel
-  alignas(64) std::uint64_t key[kSize];     ///< voxel and label, see kNoVoxel
-  alignas(64) float offset[4 * kSize];      ///< from the voxel's lower corner (x, y, z), and 1, point after point
+  alignas(64) std::uint8_t label[kSize];  ///< values of StructuralLabel
+  alignas(64) std::uint32_t key[2 * kSize];  ///< voxel and label, lower half first; see keyAt() and kNoVoxel
+  alignas(64) float offset[4 * kSize];       ///< from the voxel's lower corner (x, y, z), and 1, point after point
+
+  std::uint64_t keyAt(std::size_t i) const { return std::uint64_t{key[2 * i + 1]} << 32 | key[2 * i]; }
 };
 
 /// The key of a point that is not finite or too far away. Others hold, from the lowest bit on, 20 bits of x, y and z of

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -46,14 +47,14 @@ class SourceVoxelFilter {
                      GroundSampler& ground_sampler);
   void addPoints(std::size_t count);
   void addToVoxels(std::size_t count);
-  std::uint32_t numberOf(std::uint64_t key);
+  void numberVoxels(std::size_t count, const std::uint64_t* keys, std::uint32_t* numbers);
   void growTable();
   void startVoxels();
   void finishVoxels();
 
   double voxel_size_m_;
   float inverse_size_ = 0.0F;
-  bool takes_label_[kStructuralLabelCount] = {};
+  std::array<bool, kStructuralLabelCount> takes_label_{};
   std::unique_ptr<SourceVoxelBlock> block_;
   /// By the hash of a key the number of its voxel, counted on from source to source: what is below first_number_ is of
   /// an earlier one, and the slot is empty.
