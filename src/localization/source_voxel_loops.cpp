@@ -57,8 +57,8 @@ void findBlockVoxels(std::size_t count, float voxel_size_m, float inverse_size, 
     const auto key_z = keyOf(d, voxel_z, near);
     const auto label = hn::PromoteTo(du, hn::Load(d8, block.label + i));
     const auto low = hn::Or(key_x, hn::ShiftLeft<kAxisBits>(key_y));
-    const auto high = hn::Or(hn::ShiftRight<32 - kAxisBits>(key_y),
-                             hn::Or(hn::ShiftLeft<2 * kAxisBits - 32>(key_z), hn::ShiftLeft<3 * kAxisBits - 32>(label)));
+    const auto high = hn::Or(hn::ShiftRight<32 - kAxisBits>(key_y), hn::Or(hn::ShiftLeft<2 * kAxisBits - 32>(key_z),
+                                                                           hn::ShiftLeft<3 * kAxisBits - 32>(label)));
     const auto too_far = hn::Not(hn::VecFromMask(du, hn::RebindMask(du, near)));
     hn::StoreInterleaved2(hn::Or(low, too_far), hn::Or(high, too_far), du, block.key + 2 * i);
     hn::StoreInterleaved4(hn::Sub(x, hn::Mul(voxel_x, size)), hn::Sub(y, hn::Mul(voxel_y, size)),

@@ -12,7 +12,7 @@ struct SourceVoxelBlock {
   alignas(64) float x[kSize];  ///< m, at last in the frame of the source
   alignas(64) float y[kSize];
   alignas(64) float z[kSize];
-  alignas(64) std::uint8_t label[kSize];  ///< values of StructuralLabel
+  alignas(64) std::uint8_t label[kSize];     ///< values of StructuralLabel
   alignas(64) std::uint32_t key[2 * kSize];  ///< voxel and label, lower half first; see keyAt() and kNoVoxel
   alignas(64) float offset[4 * kSize];       ///< from the voxel's lower corner (x, y, z), and 1, point after point
 

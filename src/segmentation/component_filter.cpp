@@ -1,6 +1,9 @@
 #include "saw_ndt/segmentation/component_filter.h"
 
+#include <omp.h>
+
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <utility>
 
@@ -16,15 +19,6 @@ namespace {
 float connectionRatio(double apart_deg, double threshold_deg) {
   const double apart = radiansFromDegrees(apart_deg);
   return static_cast<float>(std::sin(apart) / std::tan(radiansFromDegrees(threshold_deg)) + std::cos(apart));
-}
-
-std::size_t wordOf(std::size_t column) { return column / 64; }
-std::uint64_t bitOf(std::size_t column) { return std::uint64_t{1} << column % 64; }
-
-// Calls with the column of each bit of a word that is set, in rising order.
-template <typename Callable>
-void forEachBit(std::uint64_t bits, std::size_t word, const Callable& call) {
-  for (; bits != 0; bits &= bits - 1) call(64 * word + static_cast<std::size_t>(__builtin_ctzll(bits)));
 }
 
 }  // namespace
@@ -51,19 +45,18 @@ void ComponentFilter::label(const RangeImage& image, const SensorModel& sensor, 
       RowBuffers& buffers = buffers_[band];
       for (int row = first_row(band); row < first_row(band + 1); ++row) {
         findRuns(row, image, sensor, ground, options, buffers);
-        if (row > first_row(band)) joinRowAbove(row);
+        if (row > first_row(band)) joinRowAbove(row, buffers);
       }
     }
 #pragma omp single
-    {
-      for (int band = 1; band < threads; ++band) {
-        const int row = first_row(band);
-        if (row > 0 && row < first_row(band + 1)) joinRowAbove(row);
-      }
-      chooseComponents(options);
+    for (int band = 1; band < threads; ++band) {
+      const int row = first_row(band);
+      if (row > 0 && row < first_row(band + 1)) joinRowAbove(row, buffers_[band]);
     }
 #pragma omp for schedule(static)
-    for (int row = 0; row < rows; ++row) writeLabels(row, ground, labels);
+    for (int row = 0; row < rows; ++row) {
+      writeLabels(row, ground, options, buffers_[omp_get_thread_num()], labels);
+    }
   }
 }
 
@@ -86,6 +79,10 @@ void ComponentFilter::prepare(const RangeImage& image, int threads) {
     buffers.links.resize(64 * words_);
     buffers.active.resize(words_);
     buffers.point_sums.resize(columns + 1);
+    buffers.begins.resize(columns);
+    buffers.ends.resize(columns);
+    buffers.pairs.resize(columns);
+    buffers.kept.resize(words_ + 1);
   }
 }
 
@@ -130,86 +127,63 @@ void ComponentFilter::findRuns(int row, const RangeImage& image, const SensorMod
 
   const std::int32_t first_run = row * columns_;
   std::int32_t begun = first_run;
-  std::int32_t ended = first_run;
   for (std::size_t word = 0; word < words_; ++word) {
     starts[word] = active[word] & ~joined[word];
     runs_before_[first_word + word] = begun;
-    const std::uint64_t goes_on = joined[word] >> 1 | (word + 1 < words_ ? joined[word + 1] << 63 : 0);
-    forEachBit(starts[word], word, [&](std::size_t column) {
-      Run& run = runs_[begun];
-      run.parent = begun++;
-      run.bottom_row = static_cast<std::int16_t>(row);
-      run.begin = static_cast<std::uint16_t>(column);
-    });
-    forEachBit(active[word] & ~goes_on, word, [&](std::size_t column) {
-      Run& run = runs_[ended++];
-      run.end = static_cast<std::uint16_t>(column + 1);
-      run.points = static_cast<std::int32_t>(point_sums[run.end] - point_sums[run.begin]);
-    });
+    begun += static_cast<std::int32_t>(std::bitset<64>(starts[word]).count());
   }
+  columnsOfBits(words_, starts, 0, buffers.begins.data());
+  for (std::size_t word = 0; word < words_; ++word) {
+    active[word] &= ~(joined[word] >> 1 | (word + 1 < words_ ? joined[word + 1] << 63 : 0));  // where runs end
+  }
+  columnsOfBits(words_, active, 1, buffers.ends.data());
   run_count_[row] = begun - first_run;
+  Run* const runs = runs_.data() + first_run;
+  for (std::int32_t i = 0; i < run_count_[row]; ++i) {
+    const std::uint16_t begin = buffers.begins[i];
+    const std::uint16_t end = buffers.ends[i];
+    const auto own_row = static_cast<std::uint16_t>(row);
+    runs[i] = {
+        first_run + i, static_cast<std::int32_t>(point_sums[end] - point_sums[begin]), own_row, own_row, begin, end};
+  }
   if (goes_on_over_seam) unite(first_run, begun - 1);
 }
 
-void ComponentFilter::joinRowAbove(int row) {
-  const std::size_t first_word = static_cast<std::size_t>(row) * words_;
-  const std::size_t first_word_above = first_word - words_;
-  std::uint64_t linked_before = 0;  // the last bit of the word before
-  for (std::size_t word = 0; word < words_; ++word) {
-    const std::uint64_t linked = linked_above_[first_word + word];
-    // Where the pixels before these are connected too, and in both rows to these, the two runs have been united.
-    const std::uint64_t united =
-        (linked << 1 | linked_before) & joined_[first_word + word] & joined_[first_word_above + word];
-    linked_before = linked >> 63;
-    forEachBit(linked & ~united, word, [&](std::size_t column) { unite(runAt(row - 1, column), runAt(row, column)); });
-  }
+void ComponentFilter::joinRowAbove(int row, RowBuffers& buffers) {
+  const std::size_t word = static_cast<std::size_t>(row) * words_;
+  const auto bitsFrom = [this](std::size_t first_word) {
+    return RowBits{starts_.data() + first_word, joined_.data() + first_word, runs_before_.data() + first_word};
+  };
+  const std::size_t pairs =
+      pairsOfRuns(words_, bitsFrom(word), bitsFrom(word - words_), linked_above_.data() + word, buffers.pairs.data());
+  for (std::size_t i = 0; i < pairs; ++i) unite(buffers.pairs[i].above, buffers.pairs[i].below);
 }
 
-std::int32_t ComponentFilter::runAt(int row, std::size_t column) const {
-  const std::size_t word = static_cast<std::size_t>(row) * words_ + wordOf(column);
-  const std::uint64_t starts = starts_[word] & (bitOf(column) | (bitOf(column) - 1));
-  return runs_before_[word] + __builtin_popcountll(starts) - 1;
-}
-
-void ComponentFilter::chooseComponents(const ComponentOptions& options) {
-  const auto rows = static_cast<std::int32_t>(run_count_.size());
-  // A parent has the smaller number: from the last run on, each hands on to its parent what it holds.
-  for (std::int32_t row = rows - 1; row >= 0; --row) {
-    for (std::int32_t index = row * columns_ + run_count_[row] - 1; index >= row * columns_; --index) {
-      const Run& run = runs_[index];
-      if (run.parent == index) continue;
-      Run& parent = runs_[run.parent];
-      parent.points += run.points;
-      parent.bottom_row = std::max(parent.bottom_row, run.bottom_row);
-    }
-  }
-  for (std::int32_t row = 0; row < rows; ++row) {
-    for (std::int32_t index = row * columns_; index < row * columns_ + run_count_[row]; ++index) {
-      Run& run = runs_[index];
-      if (run.parent != index) {
-        run.label = runs_[run.parent].label;
-        continue;
-      }
-      // 4-connected: the rows of a component have no gap, and its root is in the topmost.
-      const int rings = run.bottom_row - row + 1;
-      const bool tall = run.points >= options.minimum_points_tall && rings >= options.minimum_rings_tall;
-      run.label = tall || run.points >= options.minimum_points ? StructuralLabel::NonGround : StructuralLabel::Noise;
-    }
-  }
-}
-
-void ComponentFilter::writeLabels(int row, const std::vector<std::uint8_t>& ground,
-                                  std::vector<StructuralLabel>& labels) const {
-  const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(row) * columns_;
-  StructuralLabel* const label = labels.data() + begin;
-  for (std::int32_t column = 0; column < columns_; ++column) {
-    label[column] = ground[begin + column] != 0 ? StructuralLabel::Ground : StructuralLabel::Noise;
-  }
+void ComponentFilter::writeLabels(int row, const std::vector<std::uint8_t>& ground, const ComponentOptions& options,
+                                  RowBuffers& buffers, std::vector<StructuralLabel>& labels) const {
+  // A bit where what is kept begins and one where it ends.
+  std::uint64_t* const kept = buffers.kept.data();
+  std::fill_n(kept, words_ + 1, 0);
   for (std::int32_t index = row * columns_; index < row * columns_ + run_count_[row]; ++index) {
     const Run& run = runs_[index];
-    if (run.label == StructuralLabel::Noise) continue;
-    for (std::uint16_t column = run.begin; column < run.end; ++column) label[column] = run.label;
+    const Run* root = &run;
+    for (std::int32_t i = index; root->parent != i; root = &runs_[i]) i = root->parent;
+    // 4-connected: the rows of a component have no gap, and its root is in the topmost.
+    const int rings = root->bottom_row - root->top_row + 1;
+    const bool is_tall = (root->points >= options.minimum_points_tall) & (rings >= options.minimum_rings_tall);
+    const auto is_kept = static_cast<std::uint64_t>(is_tall | (root->points >= options.minimum_points));
+    kept[run.begin / 64] ^= is_kept << run.begin % 64;
+    kept[run.end / 64] ^= is_kept << run.end % 64;
   }
+  std::uint64_t goes_on = 0;  // all bits where what is kept goes on from the word before
+  for (std::size_t word = 0; word < words_; ++word) {
+    std::uint64_t bits = kept[word];
+    for (int shift = 1; shift < 64; shift *= 2) bits ^= bits << shift;
+    kept[word] = bits ^ goes_on;
+    goes_on = 0 - (kept[word] >> 63);
+  }
+  const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(row) * columns_;
+  labelPixels(static_cast<std::size_t>(columns_), ground.data() + begin, kept, labels.data() + begin);
 }
 
 std::int32_t ComponentFilter::rootOf(std::int32_t run) {
@@ -223,11 +197,12 @@ std::int32_t ComponentFilter::rootOf(std::int32_t run) {
 void ComponentFilter::unite(std::int32_t first, std::int32_t second) {
   first = rootOf(first);
   second = rootOf(second);
-  if (first < second) {
-    runs_[second].parent = first;
-  } else {
-    runs_[first].parent = second;
-  }
+  if (first == second) return;
+  Run& root = runs_[std::min(first, second)];
+  Run& child = runs_[std::max(first, second)];
+  child.parent = std::min(first, second);
+  root.points += child.points;
+  root.bottom_row = std::max(root.bottom_row, child.bottom_row);
 }
 
 }  // namespace saw_ndt

@@ -62,8 +62,8 @@ class SourceVoxelFilter {
   int hash_shift_ = 0;
   std::uint32_t first_number_ = 0;
   std::uint32_t voxel_count_ = 0;
-  std::vector<std::uint64_t> keys_;   ///< of each voxel
-  std::vector<float> offset_sums_;    ///< of each voxel: x, y, z (m) and the number of points
+  std::vector<std::uint64_t> keys_;  ///< of each voxel
+  std::vector<float> offset_sums_;   ///< of each voxel: x, y, z (m) and the number of points
   SourcePoints points_;
 };
 
