@@ -28,6 +28,21 @@ float floatOf(std::uint32_t bits) {
   return value;
 }
 
+// Finds the nearest return of each pixel and how many there are; see RangeImage::PixelReturns. Which return is nearer
+// is as good as random, so it must not be a branch.
+template <bool kSaturates>
+void findNearest(std::size_t points, const std::int32_t* pixel_of_point, const float* range, std::uint32_t first_pixel,
+                 std::uint32_t pixels, std::uint64_t* nearest, std::uint16_t* count) {
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::uint32_t from_first = static_cast<std::uint32_t>(pixel_of_point[i]) - first_pixel;
+    const std::uint32_t pixel = std::min(from_first, pixels);  // that of no pixel is huge
+    const bool counts = !kSaturates || count[pixel] != kMostReturns;
+    count[pixel] = static_cast<std::uint16_t>(count[pixel] + counts);
+    const std::uint64_t key = static_cast<std::uint64_t>(bitsOf(range[i])) << 32 | i;
+    nearest[pixel] = std::min(nearest[pixel], key);
+  }
+}
+
 }  // namespace
 
 void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double mounting_pitch, int threads) {
@@ -113,15 +128,9 @@ void RangeImage::placePoints(std::size_t begin, std::size_t end, std::size_t fir
   std::uint16_t* const count = returns.count.data();
   std::fill_n(nearest, pixels + 1, no_return);
   std::fill_n(count, pixels + 1, std::uint16_t{0});
-  const std::int32_t* const pixel_of_point = pixel_of_point_.data();
-  const float* const point_range = points_.range.data();
-  for (std::size_t i = begin; i < end; ++i) {
-    const auto from_first = static_cast<std::size_t>(pixel_of_point[i]) - first_pixel;
-    const std::size_t pixel = std::min(from_first, pixels);  // that of no pixel is huge
-    count[pixel] = static_cast<std::uint16_t>(count[pixel] + (count[pixel] != kMostReturns));
-    const std::uint64_t key = static_cast<std::uint64_t>(bitsOf(point_range[i])) << 32 | (i - begin);
-    nearest[pixel] = std::min(nearest[pixel], key);
-  }
+  const auto find_nearest = end - begin <= kMostReturns ? &findNearest<false> : &findNearest<true>;
+  find_nearest(end - begin, pixel_of_point_.data() + begin, points_.range.data() + begin,
+               static_cast<std::uint32_t>(first_pixel), static_cast<std::uint32_t>(pixels), nearest, count);
 
   float* const range = range_.data() + first_pixel;
   float* const horizontal_range = horizontal_range_.data() + first_pixel;

@@ -149,7 +149,8 @@ TEST_P(BothRules, LabelsDependOnNeitherThreadsNorInstructionSet) {
   auto shuffled = damaged;
   std::reverse(shuffled.begin(), shuffled.end());
   const pcl::PointCloud<pcl::PointXYZ> empty;
-  for (const auto* scan : {&organized, &damaged, &shuffled, &empty}) {
+  const std::vector<const pcl::PointCloud<pcl::PointXYZ>*> scans = {&organized, &damaged, &shuffled, &empty};
+  for (const auto* scan : scans) {
     ScanSegmenter segmenter(testOptions(GetParam()));
     std::vector<StructuralLabel> expected;
     segmenter.segment(viewOf(*scan), expected);
