@@ -119,9 +119,8 @@ const SourcePoints& Localizer::makeSource(const ScanView& scan, StageTimes& time
   }
 
   const Stopwatch stopwatch;
-  const SourcePoints& source =
-      filter_.filter(scan, method.segment ? &labels_ : nullptr,
-                     {method.ground_ratio, method.voxels.confidence, options_.T_base_lidar});
+  const SourcePoints& source = filter_.filter(scan, method.segment ? &labels_ : nullptr,
+                                              {method.ground_ratio, method.voxels.confidence, options_.T_base_lidar});
   times.filter_ms = stopwatch.milliseconds();
   return source;
 }
