@@ -8,6 +8,7 @@
 #include "saw_ndt/io/point_cloud_file.h"
 #include "saw_ndt/localization/source_voxel_filter.h"
 #include "saw_ndt/registration/weighted_normal_distributions_transform.h"
+#include "saw_ndt/segmentation/cloud_view.h"
 
 namespace {
 
@@ -61,14 +62,12 @@ template <typename PointT>
 typename pcl::PointCloud<PointT>::Ptr thinned(const typename pcl::PointCloud<PointT>::Ptr& cloud, double voxel_m) {
   if (voxel_m <= 0.0) return cloud;
   constexpr bool kLabelled = pcl::traits::has_label<PointT>::value;
-  saw_ndt::SourceVoxelFilter filter(voxel_m);
-  filter.start(kLabelled);
-  for (const PointT& point : *cloud) {
-    auto label = saw_ndt::StructuralLabel::NonGround;
-    if constexpr (kLabelled) label = static_cast<saw_ndt::StructuralLabel>(point.label);
-    filter.add(point.getVector3fMap(), label);
+  std::vector<saw_ndt::StructuralLabel> labels;
+  if constexpr (kLabelled) {
+    for (const PointT& point : *cloud) labels.push_back(static_cast<saw_ndt::StructuralLabel>(point.label));
   }
-  const saw_ndt::SourcePoints& points = filter.finish();
+  saw_ndt::SourceVoxelFilter filter(voxel_m);
+  const saw_ndt::SourcePoints& points = filter.filter(saw_ndt::viewOf(*cloud), kLabelled ? &labels : nullptr);
   auto centroids = pcl::make_shared<pcl::PointCloud<PointT>>();
   centroids->resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {

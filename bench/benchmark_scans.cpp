@@ -158,14 +158,8 @@ SourcePoints benchmarkSource(const pcl::PointCloud<pcl::PointXYZI>& scan, const 
   std::vector<StructuralLabel> labels(scan.size(), StructuralLabel::NonGround);
   if (method.segment) ScanSegmenter().segment(view, labels);
   SourceVoxelFilter filter(LocalizerOptions().source_voxel_size_m);
-  filter.start(method.segment);
-  GroundSampler ground_sampler({method.ground_ratio});
-  for (std::size_t i = 0; i < view.size; ++i) {
-    if (method.voxels.confidence.of(labels[i]) <= 0.0) continue;
-    if (labels[i] == StructuralLabel::Ground && !ground_sampler.keepsNext()) continue;
-    filter.add(Eigen::Map<const Eigen::Vector3f>(view.point(i)), labels[i]);
-  }
-  return filter.finish();
+  return filter.filter(view, method.segment ? &labels : nullptr,
+                       {method.ground_ratio, method.voxels.confidence, Eigen::Isometry3d::Identity()});
 }
 
 }  // namespace saw_ndt

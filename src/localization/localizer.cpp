@@ -8,7 +8,6 @@
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/threads.h"
-#include "saw_ndt/segmentation/ground_subsampling.h"
 
 namespace saw_ndt {
 namespace {
@@ -116,23 +115,13 @@ const SourcePoints& Localizer::makeSource(const ScanView& scan, StageTimes& time
   const LocalizationMethod& method = options_.method;
   if (method.segment) {
     const Stopwatch stopwatch;
-    segmenter_.segment(scan, labels_);
+    segmenter_.segment(scan, labels_, threadCount(options_.alignment.threads));
     times.segment_ms = stopwatch.milliseconds();
-  } else {
-    labels_.assign(scan.size, StructuralLabel::NonGround);
   }
 
   const Stopwatch stopwatch;
-  const Eigen::Isometry3f T_base_lidar = options_.T_base_lidar.cast<float>();
-  filter_.start(method.segment);
-  GroundSampler ground_sampler({method.ground_ratio});
-  for (std::size_t i = 0; i < scan.size; ++i) {
-    const StructuralLabel label = labels_[i];
-    if (method.voxels.confidence.of(label) <= 0.0) continue;
-    if (label == StructuralLabel::Ground && !ground_sampler.keepsNext()) continue;
-    filter_.add(T_base_lidar * Eigen::Map<const Eigen::Vector3f>(scan.point(i)), label);
-  }
-  const SourcePoints& source = filter_.finish();
+  const SourcePoints& source = filter_.filter(scan, method.segment ? &labels_ : nullptr,
+                                              {method.ground_ratio, method.voxels.confidence, options_.T_base_lidar});
   times.filter_ms = stopwatch.milliseconds();
   return source;
 }

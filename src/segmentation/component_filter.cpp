@@ -1,60 +1,24 @@
 #include "saw_ndt/segmentation/component_filter.h"
 
+#include <omp.h>
+
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <utility>
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
-#include "segmentation/vector_code.h"
+#include "segmentation/component_loops.h"
 
 namespace saw_ndt {
 namespace {
-
-// Runs are numbered from 2: what a pixel of no run holds instead.
-constexpr std::int32_t kNoReturn = 0;
-constexpr std::int32_t kGroundPixel = 1;
-constexpr std::int32_t kFirstRun = 2;
-
-// What a pixel that may be part of a component has: a return that is no ground; a connection to the pixel before it in
-// its row; one to the pixel above it.
-constexpr std::int32_t kActive = 1;
-constexpr std::int32_t kLinkedBefore = 2;
-constexpr std::int32_t kLinkedAbove = 4;
 
 // LeGO-LOAM connects ranges d1 >= d2, an angle a apart, where atan2(d2 sin a, d1 - d2 cos a) > t. As d1 > d2 cos a,
 // that is d2 (sin a / tan t + cos a) > d1; this is the factor of d2.
 float connectionRatio(double apart_deg, double threshold_deg) {
   const double apart = radiansFromDegrees(apart_deg);
   return static_cast<float>(std::sin(apart) / std::tan(radiansFromDegrees(threshold_deg)) + std::cos(apart));
-}
-
-inline bool connected(float first, float second, float ratio) {
-  const float nearer = first < second ? first : second;
-  const float farther = first < second ? second : first;
-  return nearer * ratio > farther;  // false where the nearer is no return, with range 0
-}
-
-// Ranges with those of ground taken out.
-SAW_NDT_VECTOR_CODE void takeOutGround(std::size_t count, const float* __restrict range,
-                                       const std::uint8_t* __restrict ground, float* __restrict obstacle_range) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::int32_t is_ground = ground[i];
-    obstacle_range[i] = is_ground != 0 ? 0.0F : range[i];
-  }
-}
-
-// The links of pixels with those before them in their row and those above them; `range` begins one pixel early. Without
-// branches,.
-SAW_NDT_VECTOR_CODE void linkPixels(std::size_t count, float ratio_along, float ratio_across,
-                                    const float* __restrict range, const float* __restrict above,
-                                    std::int32_t* __restrict links) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::int32_t active = range[i + 1] > 0.0F ? kActive : 0;
-    const std::int32_t along = connected(range[i + 1], range[i], ratio_along) ? kLinkedBefore : 0;
-    const std::int32_t across = connected(range[i + 1], above[i], ratio_across) ? kLinkedAbove : 0;
-    links[i] = active + along + across;
-  }
 }
 
 }  // namespace
@@ -68,88 +32,158 @@ void ComponentOptions::check() const {
 }
 
 void ComponentFilter::label(const RangeImage& image, const SensorModel& sensor, const std::vector<std::uint8_t>& ground,
-                            const ComponentOptions& options, std::vector<StructuralLabel>& labels) {
-  const auto columns = static_cast<std::size_t>(image.columns());
-  const std::size_t pixels = image.range().size();
-  run_of_pixel_.resize(pixels);
-  runs_.resize(pixels + kFirstRun);
-  links_.resize(columns);
-  above_.assign(columns + 1, 0.0F);  // nothing is above the top row
-  run_end_ = kFirstRun;
-  const float along = connectionRatio(360.0 / image.columns(), options.connection_angle_deg);
-  for (int row = 0; row < image.rows(); ++row) {
-    const std::size_t begin = static_cast<std::size_t>(row) * columns;
-    current_.resize(columns + 1);
-    takeOutGround(columns, image.range().data() + begin, ground.data() + begin, current_.data() + 1);
-    current_[0] = current_[columns];  // the pixel before the first is the last: over the azimuth seam
-    const double apart_deg = row > 0 ? sensor.elevations_deg[row - 1] - sensor.elevations_deg[row] : 0.0;
-    const float across = connectionRatio(apart_deg, options.connection_angle_deg);
-    linkPixels(columns, along, across, current_.data(), above_.data() + 1, links_.data());
-    connectRow(row, image, ground.data() + begin);
-    std::swap(current_, above_);
+                            const ComponentOptions& options, std::vector<StructuralLabel>& labels, int threads) {
+  prepare(image, threads);
+  labels.resize(image.range().size());
+  const int rows = image.rows();
+  const auto first_row = [&](int band) { return static_cast<int>(static_cast<std::ptrdiff_t>(rows) * band / threads); };
+#pragma omp parallel num_threads(threads)
+  {
+    // Bands of rows, one a thread, are joined within first and with one another at last.
+#pragma omp for schedule(static)
+    for (int band = 0; band < threads; ++band) {
+      RowBuffers& buffers = buffers_[band];
+      for (int row = first_row(band); row < first_row(band + 1); ++row) {
+        findRuns(row, image, sensor, ground, options, buffers);
+        if (row > first_row(band)) joinRowAbove(row, buffers);
+      }
+    }
+#pragma omp single
+    for (int band = 1; band < threads; ++band) {
+      const int row = first_row(band);
+      if (row > 0 && row < first_row(band + 1)) joinRowAbove(row, buffers_[band]);
+    }
+#pragma omp for schedule(static)
+    for (int row = 0; row < rows; ++row) {
+      writeLabels(row, ground, options, buffers_[omp_get_thread_num()], labels);
+    }
   }
-
-  chooseComponents(options);
-  labels.resize(pixels);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) labels[pixel] = label_of_run_[run_of_pixel_[pixel]];
 }
 
-void ComponentFilter::connectRow(int row, const RangeImage& image, const std::uint8_t* ground) {
-  const std::int32_t columns = image.columns();
-  const std::uint16_t* const returns = image.returns().data() + static_cast<std::ptrdiff_t>(row) * columns;
-  const std::int32_t first_run = run_end_;
-  std::int32_t run = first_run - 1;
-  std::int32_t* const run_of_pixel = run_of_pixel_.data() + static_cast<std::ptrdiff_t>(row) * columns;
-  const std::int32_t* const links = links_.data();
-  Run* const runs = runs_.data();
-  std::int32_t last_above = 0;
-  for (std::int32_t column = 0; column < columns; ++column) {
-    const std::int32_t link = links[column];
-    if (link == 0) {
-      run_of_pixel[column] = ground[column] != 0 ? kGroundPixel : kNoReturn;
-      continue;
-    }
-    if (column == 0 || (link & kLinkedBefore) == 0) {
-      ++run;
-      runs[run] = {run, 0, row, row};
-      last_above = 0;
-    }
-    runs[run].points += returns[column];
-    run_of_pixel[column] = run;
-    if ((link & kLinkedAbove) == 0) continue;
-    const std::int32_t above = run_of_pixel[column - columns];
-    if (above != last_above) unite(above, run);
-    last_above = above;
+void ComponentFilter::prepare(const RangeImage& image, int threads) {
+  columns_ = image.columns();
+  const auto columns = static_cast<std::size_t>(columns_);
+  const auto rows = static_cast<std::size_t>(image.rows());
+  words_ = (columns + 63) / 64;
+  runs_.resize(rows * columns);
+  run_count_.resize(rows);
+  starts_.resize(rows * words_);
+  joined_.resize(rows * words_);
+  linked_above_.resize(rows * words_);
+  runs_before_.resize(rows * words_);
+  if (buffers_.size() < static_cast<std::size_t>(threads)) buffers_.resize(static_cast<std::size_t>(threads));
+  for (RowBuffers& buffers : buffers_) {
+    buffers.row = kNoRow;
+    buffers.current.resize(columns + 1);
+    buffers.above.resize(columns + 1);
+    buffers.links.resize(64 * words_);
+    buffers.active.resize(words_);
+    buffers.point_sums.resize(columns + 1);
+    buffers.begins.resize(columns);
+    buffers.ends.resize(columns);
+    buffers.pairs.resize(columns);
+    buffers.kept.resize(words_ + 1);
   }
-  run_end_ = run + 1;
-  if ((links[0] & kLinkedBefore) != 0) unite(first_run, run);
 }
 
-void ComponentFilter::chooseComponents(const ComponentOptions& options) {
-  // A parent has the smaller number: from the last run on, each hands on to its parent what it holds.
-  for (std::int32_t index = run_end_ - 1; index >= kFirstRun; --index) {
-    const Run& run = runs_[index];
-    if (run.parent == index) continue;
-    Run& parent = runs_[run.parent];
-    parent.points += run.points;
-    parent.bottom_row = std::max(parent.bottom_row, run.bottom_row);
+void ComponentFilter::readRow(int row, const RangeImage& image, const std::vector<std::uint8_t>& ground,
+                              RowBuffers& buffers) const {
+  const auto columns = static_cast<std::size_t>(columns_);
+  const std::size_t begin = static_cast<std::size_t>(row) * columns;
+  takeOutGround(columns, image.range().data() + begin, ground.data() + begin, buffers.current.data() + 1);
+  buffers.current[0] = buffers.current[columns];  // the pixel before the first is the last: over the azimuth seam
+  buffers.row = row;
+}
+
+void ComponentFilter::findRuns(int row, const RangeImage& image, const SensorModel& sensor,
+                               const std::vector<std::uint8_t>& ground, const ComponentOptions& options,
+                               RowBuffers& buffers) {
+  const auto columns = static_cast<std::size_t>(columns_);
+  if (row > 0 && buffers.row != row - 1) readRow(row - 1, image, ground, buffers);
+  std::swap(buffers.current, buffers.above);
+  if (row == 0) std::fill(buffers.above.begin(), buffers.above.end(), 0.0F);  // nothing is above the top row
+  readRow(row, image, ground, buffers);
+  const double apart_deg = row > 0 ? sensor.elevations_deg[row - 1] - sensor.elevations_deg[row] : 0.0;
+  const ConnectionRatios ratios = {connectionRatio(360.0 / columns_, options.connection_angle_deg),
+                                   connectionRatio(apart_deg, options.connection_angle_deg)};
+  linkPixels(columns, ratios, buffers.current.data(), buffers.above.data() + 1, buffers.links.data());
+  std::fill(buffers.links.begin() + columns_, buffers.links.end(), std::uint8_t{0});
+  const std::size_t first_word = static_cast<std::size_t>(row) * words_;
+  std::uint64_t* const active = buffers.active.data();
+  std::uint64_t* const starts = starts_.data() + first_word;
+  std::uint64_t* const joined = joined_.data() + first_word;
+  bitsOfLinks(words_, buffers.links.data(), active, joined, linked_above_.data() + first_word);
+  const bool goes_on_over_seam = (joined[0] & 1) != 0;
+  joined[0] &= ~std::uint64_t{1};
+
+  const std::uint16_t* const returns = image.returns().data() + static_cast<std::ptrdiff_t>(row) * columns_;
+  std::uint32_t* const point_sums = buffers.point_sums.data();
+  std::uint32_t point_sum = 0;
+  for (std::size_t column = 0; column < columns; ++column) {
+    point_sums[column] = point_sum;
+    point_sum += returns[column];
   }
-  label_of_run_.reserve(runs_.size());  // the number of runs changes from scan to scan of one size
-  label_of_run_.resize(static_cast<std::size_t>(run_end_));
-  label_of_run_[kNoReturn] = StructuralLabel::Noise;
-  label_of_run_[kGroundPixel] = StructuralLabel::Ground;
-  for (std::int32_t index = kFirstRun; index < run_end_; ++index) {
+  point_sums[columns] = point_sum;
+
+  const std::int32_t first_run = row * columns_;
+  std::int32_t begun = first_run;
+  for (std::size_t word = 0; word < words_; ++word) {
+    starts[word] = active[word] & ~joined[word];
+    runs_before_[first_word + word] = begun;
+    begun += static_cast<std::int32_t>(std::bitset<64>(starts[word]).count());
+  }
+  columnsOfBits(words_, starts, 0, buffers.begins.data());
+  for (std::size_t word = 0; word < words_; ++word) {
+    active[word] &= ~(joined[word] >> 1 | (word + 1 < words_ ? joined[word + 1] << 63 : 0));  // where runs end
+  }
+  columnsOfBits(words_, active, 1, buffers.ends.data());
+  run_count_[row] = begun - first_run;
+  Run* const runs = runs_.data() + first_run;
+  for (std::int32_t i = 0; i < run_count_[row]; ++i) {
+    const std::uint16_t begin = buffers.begins[i];
+    const std::uint16_t end = buffers.ends[i];
+    const auto own_row = static_cast<std::uint16_t>(row);
+    runs[i] = {
+        first_run + i, static_cast<std::int32_t>(point_sums[end] - point_sums[begin]), own_row, own_row, begin, end};
+  }
+  if (goes_on_over_seam) unite(first_run, begun - 1);
+}
+
+void ComponentFilter::joinRowAbove(int row, RowBuffers& buffers) {
+  const std::size_t word = static_cast<std::size_t>(row) * words_;
+  const auto bitsFrom = [this](std::size_t first_word) {
+    return RowBits{starts_.data() + first_word, joined_.data() + first_word, runs_before_.data() + first_word};
+  };
+  const std::size_t pairs =
+      pairsOfRuns(words_, bitsFrom(word), bitsFrom(word - words_), linked_above_.data() + word, buffers.pairs.data());
+  for (std::size_t i = 0; i < pairs; ++i) unite(buffers.pairs[i].above, buffers.pairs[i].below);
+}
+
+void ComponentFilter::writeLabels(int row, const std::vector<std::uint8_t>& ground, const ComponentOptions& options,
+                                  RowBuffers& buffers, std::vector<StructuralLabel>& labels) const {
+  // A bit where what is kept begins and one where it ends.
+  std::uint64_t* const kept = buffers.kept.data();
+  std::fill_n(kept, words_ + 1, 0);
+  for (std::int32_t index = row * columns_; index < row * columns_ + run_count_[row]; ++index) {
     const Run& run = runs_[index];
-    if (run.parent != index) {
-      label_of_run_[index] = label_of_run_[run.parent];
-      continue;
-    }
+    const Run* root = &run;
+    for (std::int32_t i = index; root->parent != i; root = &runs_[i]) i = root->parent;
     // 4-connected: the rows of a component have no gap, and its root is in the topmost.
-    const int rings = run.bottom_row - run.top_row + 1;
-    const bool tall = run.points >= options.minimum_points_tall && rings >= options.minimum_rings_tall;
-    label_of_run_[index] =
-        tall || run.points >= options.minimum_points ? StructuralLabel::NonGround : StructuralLabel::Noise;
+    const int rings = root->bottom_row - root->top_row + 1;
+    const bool is_tall = (root->points >= options.minimum_points_tall) & (rings >= options.minimum_rings_tall);
+    const auto is_kept = static_cast<std::uint64_t>(is_tall | (root->points >= options.minimum_points));
+    kept[run.begin / 64] ^= is_kept << run.begin % 64;
+    kept[run.end / 64] ^= is_kept << run.end % 64;
   }
+  std::uint64_t goes_on = 0;  // all bits where what is kept goes on from the word before
+  for (std::size_t word = 0; word < words_; ++word) {
+    std::uint64_t bits = kept[word];
+    for (int shift = 1; shift < 64; shift *= 2) bits ^= bits << shift;
+    kept[word] = bits ^ goes_on;
+    goes_on = 0 - (kept[word] >> 63);
+  }
+  const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(row) * columns_;
+  labelPixels(static_cast<std::size_t>(columns_), ground.data() + begin, kept, labels.data() + begin);
 }
 
 std::int32_t ComponentFilter::rootOf(std::int32_t run) {
@@ -163,11 +197,12 @@ std::int32_t ComponentFilter::rootOf(std::int32_t run) {
 void ComponentFilter::unite(std::int32_t first, std::int32_t second) {
   first = rootOf(first);
   second = rootOf(second);
-  if (first < second) {
-    runs_[second].parent = first;
-  } else {
-    runs_[first].parent = second;
-  }
+  if (first == second) return;
+  Run& root = runs_[std::min(first, second)];
+  Run& child = runs_[std::max(first, second)];
+  child.parent = std::min(first, second);
+  root.points += child.points;
+  root.bottom_row = std::max(root.bottom_row, child.bottom_row);
 }
 
 }  // namespace saw_ndt

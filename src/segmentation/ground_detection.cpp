@@ -1,83 +1,18 @@
 #include "saw_ndt/segmentation/ground_detection.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
-#include "segmentation/vector_code.h"
+#include "segmentation/ground_loops.h"
 
 namespace saw_ndt {
 namespace {
 
-// States of a pixel while ground grows, each implying those before it. Doubtful: near the profile, yet too steep a step
-// from the last ground return.
-constexpr std::uint8_t kReturn = 1;
-constexpr std::uint8_t kDoubtful = 2;
-constexpr std::uint8_t kGround = 3;
-
 float tangent(double degrees) { return static_cast<float>(std::tan(radiansFromDegrees(degrees))); }
-
-struct GrowthLimits {
-  float slope;
-  float step_tolerance;
-  float profile_tolerance;
-};
-
-// Lets ground grow by one row in every column. Without branches,.
-SAW_NDT_VECTOR_CODE void growRow(std::size_t columns, const GrowthLimits limits, const float* __restrict range,
-                                 const float* __restrict horizontal_range, const float* __restrict height,
-                                 float* __restrict last_range, float* __restrict last_height,
-                                 float* __restrict profile_height, std::uint8_t* __restrict states) {
-  for (std::size_t column = 0; column < columns; ++column) {
-    const float z = height[column];
-    const float beyond = horizontal_range[column] - last_range[column];
-    const float advance = beyond > 0.0F ? beyond : 0.0F;
-    const float reach = limits.slope * advance;
-    const float above_profile = z - profile_height[column];
-    const float step = z - last_height[column];
-    const int has_return = range[column] > 0.0F ? 1 : 0;
-    const int near_profile = std::abs(above_profile) <= limits.profile_tolerance + reach ? has_return : 0;
-    const int is_ground = std::abs(step) <= limits.step_tolerance + reach ? near_profile : 0;
-    // The profile rises no faster than the slope, and falls at once: the lowest returns are the surest.
-    const float rise = above_profile < reach ? above_profile : reach;
-    last_range[column] += is_ground != 0 ? advance : 0.0F;
-    last_height[column] = is_ground != 0 ? z : last_height[column];
-    profile_height[column] += is_ground != 0 ? rise : 0.0F;
-    states[column] = static_cast<std::uint8_t>(has_return + near_profile + is_ground);
-  }
-}
-
-// How many of three pixels one above the other have returns, and how many are ground.
-SAW_NDT_VECTOR_CODE void sumColumns(std::size_t columns, const std::uint8_t* __restrict above,
-                                    const std::uint8_t* __restrict middle, const std::uint8_t* __restrict below,
-                                    std::uint8_t* __restrict returns, std::uint8_t* __restrict ground) {
-  const auto is = [](bool condition) { return static_cast<std::uint8_t>(condition ? 1 : 0); };
-  for (std::size_t column = 0; column < columns; ++column) {
-    returns[column] = static_cast<std::uint8_t>(is(above[column] >= kReturn) + is(middle[column] >= kReturn) +
-                                                is(below[column] >= kReturn));
-    ground[column] = static_cast<std::uint8_t>(is(above[column] == kGround) + is(middle[column] == kGround) +
-                                               is(below[column] == kGround));
-  }
-}
-
-// Ground stays where half of the eight neighbours that have returns are ground; what is doubtful joins where more than
-// three quarters are. The sums have one column more at either side.
-SAW_NDT_VECTOR_CODE void settleRow(std::size_t columns, const std::uint8_t* __restrict states,
-                                   const std::uint8_t* __restrict returns, const std::uint8_t* __restrict ground,
-                                   std::uint8_t* __restrict result) {
-  for (std::size_t column = 0; column < columns; ++column) {
-    const std::uint8_t is_ground = states[column] == kGround ? 1 : 0;
-    const std::uint8_t is_doubtful = states[column] == kDoubtful ? 1 : 0;
-    const auto neighbours = static_cast<std::uint8_t>(returns[column] + returns[column + 1] + returns[column + 2] - 1);
-    const auto of_ground =
-        static_cast<std::uint8_t>(ground[column] + ground[column + 1] + ground[column + 2] - is_ground);
-    const std::uint8_t stays = static_cast<std::uint8_t>(2 * of_ground) >= neighbours ? is_ground : 0;
-    const std::uint8_t joins =
-        static_cast<std::uint8_t>(4 * of_ground) > static_cast<std::uint8_t>(3 * neighbours) ? is_doubtful : 0;
-    result[column] = stays | joins;
-  }
-}
 
 }  // namespace
 
@@ -93,17 +28,37 @@ void GroundOptions::check() const {
 }
 
 void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
-                             std::vector<std::uint8_t>& ground) {
+                             std::vector<std::uint8_t>& ground, int threads) {
   if (options.rule == GroundRule::Inclination) {
     detectByInclination(image, sensor, options, ground);
     return;
   }
+  const auto columns = static_cast<std::size_t>(image.columns());
+  const float sensor_height = estimatedSensorHeight(image, options);
+  last_range_.assign(columns, 0.0F);
+  last_height_.assign(columns, -sensor_height);
+  profile_height_.assign(columns, -sensor_height);
+  states_.resize(image.range().size());
+  no_returns_.assign(columns, 0);
+  if (neighbour_sums_.size() < static_cast<std::size_t>(threads)) {
+    neighbour_sums_.resize(static_cast<std::size_t>(threads));
+  }
+  for (NeighbourSums& sums : neighbour_sums_) {
+    sums.returns.resize(columns + 2);
+    sums.ground.resize(columns + 2);
+  }
   ground.resize(image.range().size());
-  grow(image, options);
-  if (options.smooths) {
-    smooth(image, ground);
-  } else {
-    for (std::size_t pixel = 0; pixel < states_.size(); ++pixel) ground[pixel] = states_[pixel] == kGround ? 1 : 0;
+  constexpr std::size_t kColumnsAtOnce = 512;
+#pragma omp parallel num_threads(threads)
+  {
+#pragma omp for schedule(static)
+    for (std::size_t column = 0; column < columns; column += kColumnsAtOnce) {
+      grow(image, options, column, std::min(kColumnsAtOnce, columns - column));
+    }
+#pragma omp for schedule(static)
+    for (int row = 0; row < image.rows(); ++row) {
+      settle(image, row, options.smooths, neighbour_sums_[omp_get_thread_num()], ground);
+    }
   }
 }
 
@@ -149,42 +104,38 @@ float GroundDetection::estimatedSensorHeight(const RangeImage& image, const Grou
   return -*middle;
 }
 
-void GroundDetection::grow(const RangeImage& image, const GroundOptions& options) {
-  const auto columns = static_cast<std::size_t>(image.columns());
-  const float sensor_height = estimatedSensorHeight(image, options);
-  last_range_.assign(columns, 0.0F);
-  last_height_.assign(columns, -sensor_height);
-  profile_height_.assign(columns, -sensor_height);
-  states_.resize(image.range().size());
+void GroundDetection::grow(const RangeImage& image, const GroundOptions& options, std::size_t first_column,
+                           std::size_t columns) {
   const GrowthLimits limits = {tangent(options.slope_deg), static_cast<float>(options.step_tolerance_m),
                                static_cast<float>(options.profile_tolerance_m)};
   for (int row = image.rows() - 1; row >= 0; --row) {
-    const std::size_t begin = static_cast<std::size_t>(row) * columns;
-    growRow(columns, limits, image.range().data() + begin, image.horizontalRange().data() + begin,
-            image.height().data() + begin, last_range_.data(), last_height_.data(), profile_height_.data(),
-            states_.data() + begin);
+    const std::size_t begin = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.columns()) + first_column;
+    growRow(columns, limits,
+            {image.range().data() + begin, image.horizontalRange().data() + begin, image.height().data() + begin,
+             last_range_.data() + first_column, last_height_.data() + first_column,
+             profile_height_.data() + first_column, states_.data() + begin});
   }
 }
 
-void GroundDetection::smooth(const RangeImage& image, std::vector<std::uint8_t>& ground) {
-  const int rows = image.rows();
+void GroundDetection::settle(const RangeImage& image, int row, bool smooths, NeighbourSums& sums,
+                             std::vector<std::uint8_t>& ground) const {
   const auto columns = static_cast<std::size_t>(image.columns());
-  padded_returns_.resize(columns + 2);
-  padded_ground_.resize(columns + 2);
-  for (int row = 0; row < rows; ++row) {
-    const std::uint8_t* middle = states_.data() + static_cast<std::size_t>(row) * columns;
-    no_returns_.assign(columns, 0);
-    const std::uint8_t* above = row > 0 ? middle - columns : no_returns_.data();
-    const std::uint8_t* below = row + 1 < rows ? middle + columns : no_returns_.data();
-    sumColumns(columns, above, middle, below, padded_returns_.data() + 1, padded_ground_.data() + 1);
-    // The neighbours over the azimuth seam.
-    for (std::vector<std::uint8_t>* padded : {&padded_returns_, &padded_ground_}) {
-      padded->front() = (*padded)[columns];
-      padded->back() = (*padded)[1];
-    }
-    settleRow(columns, middle, padded_returns_.data(), padded_ground_.data(),
-              ground.data() + static_cast<std::size_t>(row) * columns);
+  const std::size_t begin = static_cast<std::size_t>(row) * columns;
+  const std::uint8_t* const middle = states_.data() + begin;
+  std::uint8_t* const result = ground.data() + begin;
+  if (!smooths) {
+    for (std::size_t column = 0; column < columns; ++column) result[column] = middle[column] == kGroundState ? 1 : 0;
+    return;
   }
+  const std::uint8_t* const above = row > 0 ? middle - columns : no_returns_.data();
+  const std::uint8_t* const below = row + 1 < image.rows() ? middle + columns : no_returns_.data();
+  sumColumns(columns, above, middle, below, sums.returns.data() + 1, sums.ground.data() + 1);
+  // The neighbours over the azimuth seam.
+  for (std::vector<std::uint8_t>* padded : {&sums.returns, &sums.ground}) {
+    padded->front() = (*padded)[columns];
+    padded->back() = (*padded)[1];
+  }
+  settleRow(columns, middle, sums.returns.data(), sums.ground.data(), result);
 }
 
 }  // namespace saw_ndt

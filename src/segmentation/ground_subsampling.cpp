@@ -2,8 +2,6 @@
 
 #include <pcl/point_types.h>
 
-#include <cmath>
-
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/segmentation/impl/ground_subsampling.hpp"
 
@@ -15,14 +13,6 @@ void GroundSubsamplingOptions::check() const {
 
 GroundSampler::GroundSampler(const GroundSubsamplingOptions& options) : ratio_(options.ground_ratio) {
   options.check();
-}
-
-bool GroundSampler::keepsNext() {
-  ++counted_;
-  const auto kept = static_cast<std::uint64_t>(std::floor(static_cast<double>(counted_) * ratio_));
-  const bool keeps = kept > kept_;
-  kept_ = kept;
-  return keeps;
 }
 
 void subsampleGround(const std::vector<StructuralLabel>& labels, const GroundSubsamplingOptions& options,

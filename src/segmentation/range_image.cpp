@@ -1,157 +1,155 @@
 #include "saw_ndt/segmentation/range_image.h"
 
+#include <omp.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
 #include "saw_ndt/common/geometry.h"
-#include "segmentation/vector_code.h"
+#include "segmentation/range_image_loops.h"
 
 namespace saw_ndt {
 namespace {
 
-constexpr std::size_t kBlock = 256;
-constexpr auto kTurn = static_cast<float>(2.0 * kPi);
+constexpr auto kMostReturns = std::numeric_limits<std::uint16_t>::max();
 
-// The angle of (x, y) from the x axis, 0 to 2 pi, to 2e-6 rad and without a branch, so that the compiler makes vector
-// code of a loop over it. Minimax polynomial of the arc tangent on [0, 1] (Abramowitz and Stegun 4.4.49).
-inline float azimuthOf(float x, float y) {
-  const float absolute_x = std::abs(x);
-  const float absolute_y = std::abs(y);
-  const float greater = std::max(absolute_x, absolute_y);
-  const float smaller = std::min(absolute_x, absolute_y);
-  const float t = smaller / std::max(greater, std::numeric_limits<float>::min());
-  const float s = t * t;
-  const float polynomial =
-      1.0F +
-      s * (-0.3333314528F +
-           s * (0.1999355085F +
-                s * (-0.1420889944F +
-                     s * (0.1065626393F +
-                          s * (-0.0752896400F + s * (0.0429096138F + s * (-0.0161657367F + s * 0.0028662257F)))))));
-  float angle = t * polynomial;
-  angle = absolute_y > absolute_x ? static_cast<float>(kPi / 2) - angle : angle;
-  angle = x < 0.0F ? static_cast<float>(kPi) - angle : angle;
-  return y < 0.0F ? kTurn - angle : angle;
+std::uint32_t bitsOf(float value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return bits;
 }
 
-struct BlockGeometry {
-  float columns_per_radian;
-  float last_column;
-  float pitch_cosine;
-  float pitch_sine;
-};
+float floatOf(std::uint32_t bits) {
+  float value;
+  std::memcpy(&value, &bits, sizeof(value));
+  return value;
+}
 
-// Column, range, levelled horizontal range and height of points. Without branches, as azimuthOf().
-SAW_NDT_VECTOR_CODE void measureBlock(std::size_t count, const BlockGeometry geometry, const float* __restrict x,
-                                      const float* __restrict y, const float* __restrict z,
-                                      std::int32_t* __restrict column, float* __restrict range,
-                                      float* __restrict horizontal_range, float* __restrict height) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const float squared_range = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-    // Not a number compares false; an infinite coordinate, or one whose square overflows, gives infinity.
-    const bool valid = squared_range > 0.0F && squared_range <= std::numeric_limits<float>::max();
-    const float safe_squared_range = valid ? squared_range : 0.0F;
-    const float place = valid ? azimuthOf(x[i], y[i]) * geometry.columns_per_radian : 0.0F;
-    const float level_height = geometry.pitch_cosine * z[i] - geometry.pitch_sine * x[i];
-    const float squared_horizontal_range = safe_squared_range - level_height * level_height;
-    column[i] = static_cast<std::int32_t>(place < geometry.last_column ? place : geometry.last_column);
-    range[i] = std::sqrt(safe_squared_range);
-    horizontal_range[i] = std::sqrt(squared_horizontal_range > 0.0F ? squared_horizontal_range : 0.0F);
-    height[i] = level_height;
+// Finds the nearest return of each pixel and how many there are; see RangeImage::PixelReturns. Which return is nearer
+// is as good as random, so it must not be a branch.
+template <bool kSaturates>
+void findNearest(std::size_t points, const std::int32_t* pixel_of_point, const float* range, std::uint32_t first_pixel,
+                 std::uint32_t pixels, std::uint64_t* nearest, std::uint16_t* count) {
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::uint32_t from_first = static_cast<std::uint32_t>(pixel_of_point[i]) - first_pixel;
+    const std::uint32_t pixel = std::min(from_first, pixels);  // that of no pixel is huge
+    const bool counts = !kSaturates || count[pixel] != kMostReturns;
+    count[pixel] = static_cast<std::uint16_t>(count[pixel] + counts);
+    const std::uint64_t key = static_cast<std::uint64_t>(bitsOf(range[i])) << 32 | i;
+    nearest[pixel] = std::min(nearest[pixel], key);
   }
-}
-
-// `taken` where all bits of the mask are 1, `held` where they are 0.
-inline float blend(std::uint32_t mask, float taken, float held) {
-  std::uint32_t taken_bits;
-  std::uint32_t held_bits;
-  std::memcpy(&taken_bits, &taken, sizeof(taken));
-  std::memcpy(&held_bits, &held, sizeof(held));
-  const std::uint32_t bits = (taken_bits & mask) | (held_bits & ~mask);
-  float result;
-  std::memcpy(&result, &bits, sizeof(result));
-  return result;
 }
 
 }  // namespace
 
-void RangeImage::measurePoints(const ScanView& scan, double mounting_pitch) {
-  points_.column.resize(scan.size);
-  points_.range.resize(scan.size);
-  points_.horizontal_range.resize(scan.size);
-  points_.height.resize(scan.size);
-  const BlockGeometry geometry = {static_cast<float>(columns_) / kTurn, static_cast<float>(columns_ - 1),
-                                  static_cast<float>(std::cos(mounting_pitch)),
-                                  static_cast<float>(std::sin(mounting_pitch))};
-  std::array<float, kBlock> x;
-  std::array<float, kBlock> y;
-  std::array<float, kBlock> z;
-  for (std::size_t begin = 0; begin < scan.size; begin += kBlock) {
-    const std::size_t count = std::min(kBlock, scan.size - begin);
-    for (std::size_t i = 0; i < count; ++i) {
-      const float* point = scan.point(begin + i);
-      x[i] = point[0];
-      y[i] = point[1];
-      z[i] = point[2];
-    }
-    measureBlock(count, geometry, x.data(), y.data(), z.data(), points_.column.data() + begin,
-                 points_.range.data() + begin, points_.horizontal_range.data() + begin, points_.height.data() + begin);
-  }
-}
-
-void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double mounting_pitch) {
+void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double mounting_pitch, int threads) {
   sensor.check();
   if (scan.size > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
     throw std::invalid_argument("scan: more than 2^31 - 1 points");
   }
   rows_ = sensor.rows();
   columns_ = sensor.columns;
-  measurePoints(scan, mounting_pitch);
+  measure(scan, mounting_pitch, threads);
   ring_index_.assign(scan, points_, sensor);
 
-  placePoints(scan.size);
-}
-
-void RangeImage::placePoints(std::size_t point_count) {
   const std::size_t pixels = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_);
-  range_.assign(pixels, 0.0F);
+  range_.resize(pixels);
   horizontal_range_.resize(pixels);
   height_.resize(pixels);
-  returns_.assign(pixels, 0);
-  pixel_of_point_.resize(point_count);
-  float* const range = range_.data();
-  float* const horizontal_range = horizontal_range_.data();
-  float* const height = height_.data();
-  std::uint16_t* const returns = returns_.data();
-  std::int32_t* const pixel_of_point = pixel_of_point_.data();
-  const std::int16_t* const row_of_point = ring_index_.rows().data();
-  const float* const point_range = points_.range.data();
-  const std::int32_t* const point_column = points_.column.data();
-  const float* const point_horizontal_range = points_.horizontal_range.data();
-  const float* const point_height = points_.height.data();
-  const std::int32_t columns = columns_;
-  for (std::size_t i = 0; i < point_count; ++i) {
-    const std::int32_t row = row_of_point[i];
-    if (point_range[i] <= 0.0F || row == RingIndex::kNoRow) {
-      pixel_of_point[i] = kNoPixel;
-      continue;
-    }
-    const std::int32_t pixel = row * columns + point_column[i];
-    pixel_of_point[i] = pixel;
-    returns[pixel] =
-        static_cast<std::uint16_t>(returns[pixel] + (returns[pixel] != std::numeric_limits<std::uint16_t>::max()));
-    // Which return is nearer is as good as random, so it must not be a branch: blend bits instead.
-    const float held = range[pixel];
-    const bool takes = (held <= 0.0F) | (point_range[i] < held);
-    const std::uint32_t mask = 0U - static_cast<std::uint32_t>(takes);
-    range[pixel] = blend(mask, point_range[i], held);
-    horizontal_range[pixel] = blend(mask, point_horizontal_range[i], horizontal_range[pixel]);
-    height[pixel] = blend(mask, point_height[i], height[pixel]);
+  returns_.resize(pixels);
+  pixel_of_point_.resize(scan.size);
+  if (pixel_returns_.size() < static_cast<std::size_t>(threads)) {
+    pixel_returns_.resize(static_cast<std::size_t>(threads));
   }
+  if (!ring_index_.rowAfterRow()) {
+    placeInAnyOrder(pixel_returns_[0]);
+    return;
+  }
+  run_of_row_.resize(static_cast<std::size_t>(rows_));
+  for (int row = 0; row < rows_; ++row) run_of_row_[row] = {0, 0, static_cast<std::int16_t>(row)};
+  for (const RowRun& run : ring_index_.runs()) run_of_row_[run.row] = run;
+  for (PixelReturns& returns : pixel_returns_) {
+    returns.nearest.resize(static_cast<std::size_t>(columns_) + 1);
+    returns.count.resize(static_cast<std::size_t>(columns_) + 1);
+  }
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
+  for (int row = 0; row < rows_; ++row) placeRun(run_of_row_[row], pixel_returns_[omp_get_thread_num()]);
+}
+
+void RangeImage::measure(const ScanView& scan, double mounting_pitch, int threads) {
+  constexpr std::size_t kBlock = PointMeasurements::kBlock;
+  const auto blocks = static_cast<std::ptrdiff_t>((scan.size + kBlock - 1) / kBlock);
+  points_.column.resize(scan.size);
+  points_.range.resize(scan.size);
+  points_.horizontal_range.resize(scan.size);
+  points_.height.resize(scan.size);
+  points_.spans.resize(static_cast<std::size_t>(blocks));
+  const ProjectionGeometry geometry = {static_cast<float>(columns_) / static_cast<float>(2.0 * kPi),
+                                       static_cast<float>(columns_ - 1), static_cast<float>(std::cos(mounting_pitch)),
+                                       static_cast<float>(std::sin(mounting_pitch))};
+  constexpr std::ptrdiff_t kBlocksAtOnce = 32;
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (std::ptrdiff_t block = 0; block < blocks; block += kBlocksAtOnce) {
+    const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
+    const std::size_t count = std::min(scan.size - begin, kBlocksAtOnce * kBlock);
+    measurePoints(count, scan.stride, scan.point(begin), geometry,
+                  {points_.column.data() + begin, points_.range.data() + begin, points_.horizontal_range.data() + begin,
+                   points_.height.data() + begin, points_.spans.data() + block});
+  }
+}
+
+void RangeImage::placeRun(const RowRun& run, PixelReturns& returns) {
+  const auto columns = static_cast<std::size_t>(columns_);
+  const std::size_t first_pixel = static_cast<std::size_t>(run.row) * columns;
+  pixelsOfColumns(run.end - run.begin, points_.column.data() + run.begin, static_cast<std::int32_t>(first_pixel),
+                  pixel_of_point_.data() + run.begin);
+  placePoints(run.begin, run.end, first_pixel, columns, returns);
+}
+
+void RangeImage::placeInAnyOrder(PixelReturns& returns) {
+  const std::size_t pixels = range_.size();
+  const std::vector<std::int16_t>& row_of_point = ring_index_.rows();
+  for (std::size_t i = 0; i < pixel_of_point_.size(); ++i) {
+    const bool seen = points_.column[i] != PointMeasurements::kNoColumn && row_of_point[i] != RingIndex::kNoRow;
+    pixel_of_point_[i] = seen ? row_of_point[i] * columns_ + points_.column[i] : kNoPixel;
+  }
+  returns.nearest.resize(pixels + 1);
+  returns.count.resize(pixels + 1);
+  placePoints(0, pixel_of_point_.size(), 0, pixels, returns);
+}
+
+void RangeImage::placePoints(std::size_t begin, std::size_t end, std::size_t first_pixel, std::size_t pixels,
+                             PixelReturns& returns) {
+  const std::uint64_t no_return = static_cast<std::uint64_t>(bitsOf(std::numeric_limits<float>::infinity())) << 32;
+  std::uint64_t* const nearest = returns.nearest.data();
+  std::uint16_t* const count = returns.count.data();
+  std::fill_n(nearest, pixels + 1, no_return);
+  std::fill_n(count, pixels + 1, std::uint16_t{0});
+  const auto find_nearest = end - begin <= kMostReturns ? &findNearest<false> : &findNearest<true>;
+  find_nearest(end - begin, pixel_of_point_.data() + begin, points_.range.data() + begin,
+               static_cast<std::uint32_t>(first_pixel), static_cast<std::uint32_t>(pixels), nearest, count);
+
+  float* const range = range_.data() + first_pixel;
+  float* const horizontal_range = horizontal_range_.data() + first_pixel;
+  float* const height = height_.data() + first_pixel;
+  if (begin == end) {
+    std::fill_n(range, pixels, 0.0F);
+    std::fill_n(returns_.data() + first_pixel, pixels, std::uint16_t{0});
+    return;
+  }
+  const float* const point_horizontal_range = points_.horizontal_range.data() + begin;
+  const float* const point_height = points_.height.data() + begin;
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    const std::uint64_t key = nearest[pixel];
+    const auto point = static_cast<std::uint32_t>(key);  // the first one where there is no return
+    range[pixel] = key == no_return ? 0.0F : floatOf(static_cast<std::uint32_t>(key >> 32));
+    horizontal_range[pixel] = point_horizontal_range[point];
+    height[pixel] = point_height[point];
+  }
+  std::copy_n(count, pixels, returns_.data() + first_pixel);
 }
 
 }  // namespace saw_ndt

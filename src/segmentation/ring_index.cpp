@@ -56,13 +56,18 @@ bool isOrganized(const ScanView& scan, int rows) {
 }  // namespace
 
 void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
-  rows_.resize(scan.size);
   if (isOrganized(scan, sensor.rows())) {
     source_ = VerticalIndexSource::OrganizedRow;
-    for (std::size_t i = 0; i < scan.size; ++i) rows_[i] = static_cast<std::int16_t>(i / scan.width);
-    putLowestRowLast(scan, points, sensor);
+    runs_.clear();
+    for (int row = 0; row < sensor.rows(); ++row) {
+      const std::size_t begin = static_cast<std::size_t>(row) * scan.width;
+      runs_.push_back({begin, begin + scan.width, static_cast<std::int16_t>(row)});
+    }
+    if (!rowsRise(scan, points, sensor)) return;
+    for (RowRun& run : runs_) run.row = static_cast<std::int16_t>(sensor.rows() - 1 - run.row);
   } else if (scan.rings != nullptr) {
     source_ = VerticalIndexSource::RingField;
+    rows_.resize(scan.size);
     for (std::size_t i = 0; i < scan.size; ++i) {
       if (scan.rings[i] >= sensor.rows()) {
         throw std::invalid_argument("ring " + std::to_string(scan.rings[i]) + " of point " + std::to_string(i) +
@@ -71,8 +76,9 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
       }
       rows_[i] = static_cast<std::int16_t>(scan.rings[i]);
     }
-    putLowestRowLast(scan, points, sensor);
-  } else if (assignFromFileOrder(scan, points, sensor)) {
+    if (!rowsRise(scan, points, sensor)) return;
+    for (std::int16_t& row : rows_) row = static_cast<std::int16_t>(sensor.rows() - 1 - row);
+  } else if (findRuns(scan, points, sensor) && matchRunsToBeams(scan, points, sensor)) {
     source_ = VerticalIndexSource::FileOrder;
   } else {
     source_ = VerticalIndexSource::ElevationTable;
@@ -84,45 +90,46 @@ bool RingIndex::findRuns(const ScanView& scan, const PointMeasurements& points, 
   const auto most_runs = static_cast<std::size_t>(sensor.rows());
   const auto fall = static_cast<std::int32_t>(sensor.columns * (kAzimuthFallOfNextRingDeg / 360.0));
   std::int32_t previous_column = -1;
-  run_starts_.clear();
-  run_starts_.push_back(0);
-  for (std::size_t i = 0; i < scan.size; ++i) {
-    if (points.range[i] <= 0.0F) continue;
-    const bool falls = points.column[i] < previous_column - fall;
-    previous_column = points.column[i];
-    if (!falls) continue;
-    const std::size_t start = scan.point(i)[1] == 0.0F ? ringStartAtSeam(scan, points, i) : i;
-    if (start == scan.size) continue;
-    if (run_starts_.size() == most_runs) return false;
-    run_starts_.push_back(start);
-  }
-  return true;
-}
-
-bool RingIndex::assignFromFileOrder(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
-  if (!findRuns(scan, points, sensor)) return false;
-  if (!matchRunsToBeams(scan, points, sensor)) return false;
-
-  for (std::size_t run = 0; run < run_starts_.size(); ++run) {
-    const std::size_t end = run + 1 < run_starts_.size() ? run_starts_[run + 1] : scan.size;
-    std::fill(rows_.begin() + static_cast<std::ptrdiff_t>(run_starts_[run]),
-              rows_.begin() + static_cast<std::ptrdiff_t>(end), row_of_run_[run]);
+  runs_.clear();
+  runs_.reserve(most_runs);
+  runs_.push_back({0, scan.size, 0});
+  for (std::size_t block = 0; block < points.spans.size(); ++block) {
+    const ColumnSpan span = points.spans[block];
+    if (span.least > span.greatest) continue;
+    const std::size_t begin = block * PointMeasurements::kBlock;
+    const std::size_t end = std::min(begin + PointMeasurements::kBlock, scan.size);
+    if (std::max<std::int32_t>(previous_column, span.greatest) - span.least <= fall) {
+      std::size_t last = end - 1;
+      while (points.column[last] == PointMeasurements::kNoColumn) --last;
+      previous_column = points.column[last];
+      continue;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      if (points.column[i] == PointMeasurements::kNoColumn) continue;
+      const bool falls = points.column[i] < previous_column - fall;
+      previous_column = points.column[i];
+      if (!falls) continue;
+      const std::size_t start = scan.point(i)[1] == 0.0F ? ringStartAtSeam(scan, points, i) : i;
+      if (start == scan.size) continue;
+      if (runs_.size() == most_runs) return false;
+      runs_.back().end = start;
+      runs_.push_back({start, scan.size, 0});
+    }
   }
   return true;
 }
 
 bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
-  const std::size_t runs = run_starts_.size();
+  const std::size_t runs = runs_.size();
   const auto rows = static_cast<std::size_t>(sensor.rows());
   run_elevations_.resize(runs);
   run_spreads_.resize(runs);
   for (std::size_t run = 0; run < runs; ++run) {
-    const std::size_t start = run_starts_[run];
-    const std::size_t end = run + 1 < runs ? run_starts_[run + 1] : scan.size;
-    const std::size_t step = std::max<std::size_t>(1, (end - start) / kSamplesOfRun);
+    const std::size_t end = runs_[run].end;
+    const std::size_t step = std::max<std::size_t>(1, (end - runs_[run].begin) / kSamplesOfRun);
     samples_.clear();
     samples_.reserve(2 * kSamplesOfRun);
-    for (std::size_t i = start; i < end; i += step) {
+    for (std::size_t i = runs_[run].begin; i < end; i += step) {
       if (points.range[i] > 0.0F) samples_.push_back(elevationSine(scan, points, i));
     }
     if (samples_.empty()) samples_.push_back(0.0F);
@@ -149,13 +156,12 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
   }
   if (!(costs_[rows] <= kGreatestMeanMisfitDeg * static_cast<float>(runs))) return false;
 
-  row_of_run_.resize(runs);
   std::size_t row = rows;
   for (std::size_t run = runs; run-- > 0;) {
     do {
       --row;
     } while (taken_[run * rows + row] == 0);
-    row_of_run_[run] = static_cast<std::int16_t>(row);
+    runs_[run].row = static_cast<std::int16_t>(row);
   }
   return true;
 }
@@ -170,6 +176,7 @@ void RingIndex::assignFromElevation(const ScanView& scan, const PointMeasurement
     beam_sines_.push_back(sine((beams[row] + beams[row + 1]) / 2));
   const float greatest = sine(std::min(90.0, beams.front() + kElevationMarginDeg));
   const float least = sine(std::max(-90.0, beams.back() - kElevationMarginDeg));
+  rows_.resize(scan.size);
   for (std::size_t i = 0; i < scan.size; ++i) {
     rows_[i] = kNoRow;
     if (points.range[i] <= 0.0F) continue;
@@ -180,7 +187,7 @@ void RingIndex::assignFromElevation(const ScanView& scan, const PointMeasurement
   }
 }
 
-void RingIndex::putLowestRowLast(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
+bool RingIndex::rowsRise(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) const {
   const std::size_t step = std::max<std::size_t>(1, scan.size / kSamplesOfScan);
   const double middle_row = 0.5 * (sensor.rows() - 1);
   double rows = 0.0;
@@ -189,16 +196,14 @@ void RingIndex::putLowestRowLast(const ScanView& scan, const PointMeasurements& 
   double count = 0.0;
   for (std::size_t i = 0; i < scan.size; i += step) {
     if (points.range[i] <= 0.0F) continue;
-    const double row = rows_[i] - middle_row;
+    const double row = (rowAfterRow() ? static_cast<std::int16_t>(i / scan.width) : rows_[i]) - middle_row;
     const double sine = elevationSine(scan, points, i);
     rows += row;
     sines += sine;
     products += row * sine;
     count += 1.0;
   }
-  const bool rises = products * count > rows * sines;
-  if (!rises) return;
-  for (std::int16_t& row : rows_) row = static_cast<std::int16_t>(sensor.rows() - 1 - row);
+  return products * count > rows * sines;
 }
 
 }  // namespace saw_ndt

@@ -41,16 +41,21 @@ TEST(Localizer, AllocatesNothingOfAScansSizeInTheSteadyState) {
 }
 
 TEST(SourceVoxelFilter, AllocatesNothingInTheSteadyState) {
+  std::vector<float> xyz;
+  for (int i = 0; i < 200000; ++i) {
+    const auto n = static_cast<float>(i);
+    xyz.insert(xyz.end(), {0.3F * std::fmod(n, 400.0F), 0.001F * n, 1.0F});
+  }
+  ScanView scan;
+  scan.xyz = xyz.data();
+  scan.stride = 3;
+  scan.size = xyz.size() / 3;
+  const std::vector<StructuralLabel> labels(scan.size, StructuralLabel::NonGround);
   SourceVoxelFilter filter(0.2);
   std::size_t before = 0;
   for (int round = 0; round < 3; ++round) {
     before = allocated_bytes;
-    filter.start(true);
-    for (int i = 0; i < 200000; ++i) {
-      const auto n = static_cast<float>(i);
-      filter.add({0.3F * std::fmod(n, 400.0F), 0.001F * n, 1.0F}, StructuralLabel::NonGround);
-    }
-    EXPECT_GT(filter.finish().size(), 131072U / 2);  // beyond the first table
+    EXPECT_GT(filter.filter(scan, &labels).size(), 131072U / 2);  // beyond the first table
   }
   EXPECT_EQ(allocated_bytes - before, 0U);
 }

@@ -9,6 +9,7 @@
 #include <random>
 #include <tuple>
 
+#include "saw_ndt/common/instruction_set.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
@@ -30,10 +31,33 @@ std::vector<Point> randomPoints(unsigned seed, int count, float extent_m) {
   return points;
 }
 
-SourcePoints filtered(SourceVoxelFilter& filter, const std::vector<Point>& points, bool labelled = true) {
-  filter.start(labelled);
-  for (const Point& point : points) filter.add(point.position, point.label);
-  return filter.finish();
+struct Scan {
+  std::vector<float> xyz;
+  std::vector<StructuralLabel> labels;
+
+  explicit Scan(const std::vector<Point>& points) {
+    for (const Point& point : points) {
+      xyz.insert(xyz.end(), point.position.data(), point.position.data() + 3);
+      labels.push_back(point.label);
+    }
+  }
+  ScanView view() const {
+    ScanView view;
+    view.xyz = xyz.data();
+    view.stride = 3;
+    view.size = labels.size();
+    return view;
+  }
+};
+
+SourcePoints filtered(SourceVoxelFilter& filter, const std::vector<Point>& points,
+                      const SourceSelection& selection = SourceSelection()) {
+  const Scan scan(points);
+  return filter.filter(scan.view(), &scan.labels, selection);
+}
+
+SourcePoints filteredWithoutLabels(SourceVoxelFilter& filter, const std::vector<Point>& points) {
+  return filter.filter(Scan(points).view(), nullptr);
 }
 
 bool sameBits(const SourcePoints& a, const SourcePoints& b) {
@@ -111,12 +135,13 @@ TEST(SourceVoxelFilter, SizeZeroKeepsThePoints) {
   const std::vector<Point> points = randomPoints(7, 500, 0.1F);
   SourceVoxelFilter filter(0.0);
   for (const bool labelled : {true, false}) {
-    const SourcePoints source = filtered(filter, points, labelled);
+    const SourcePoints source = labelled ? filtered(filter, points) : filteredWithoutLabels(filter, points);
     ASSERT_EQ(source.size(), points.size());
     EXPECT_EQ(source.labelled, labelled);
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_EQ(Eigen::Vector3f(source.x[i], source.y[i], source.z[i]), points[i].position);
-      EXPECT_EQ(source.label[i], static_cast<std::uint8_t>(points[i].label));
+      const StructuralLabel label = labelled ? points[i].label : StructuralLabel::NonGround;
+      EXPECT_EQ(source.label[i], static_cast<std::uint8_t>(label));
     }
   }
 }
@@ -125,20 +150,20 @@ TEST(SourceVoxelFilter, PassesOverWhatIsNotFiniteOrTooFar) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   for (const double voxel_size_m : {0.2, 0.0}) {
     std::vector<float> bad = {nan, infinity, -infinity};
-    if (voxel_size_m > 0.0) bad.insert(bad.end(), {5e8F, -5e8F, 3e38F, -3e38F});
-    SourceVoxelFilter filter(voxel_size_m);
-    filter.start(true);
+    if (voxel_size_m > 0.0) bad.insert(bad.end(), {104858.0F, -104858.0F, 5e8F, -5e8F, 3e38F, -3e38F});
+    std::vector<Point> points;
     for (const float value : bad) {
       for (int axes = 1; axes < 8; ++axes) {
         Eigen::Vector3f point(1.0F, 2.0F, 3.0F);
         for (int axis = 0; axis < 3; ++axis) {
           if ((axes >> axis & 1) != 0) point[axis] = value;
         }
-        filter.add(point, StructuralLabel::Ground);
+        points.push_back({point, StructuralLabel::Ground});
       }
     }
-    filter.add({1.0F, 2.0F, 3.0F}, StructuralLabel::Ground);
-    const SourcePoints& source = filter.finish();
+    points.push_back({{1.0F, 2.0F, 3.0F}, StructuralLabel::Ground});
+    SourceVoxelFilter filter(voxel_size_m);
+    const SourcePoints source = filtered(filter, points);
     ASSERT_EQ(source.size(), 1U) << voxel_size_m;
     EXPECT_FLOAT_EQ(source.z[0], 3.0F);
   }
@@ -148,12 +173,72 @@ TEST(SourceVoxelFilter, AnObjectUsedAgainGivesTheSameBits) {
   const std::vector<Point> first = randomPoints(8, 5000, 5.0F), second = randomPoints(9, 3000, 9.0F);
   SourceVoxelFilter filter(0.2);
   const SourcePoints expected = filtered(filter, first);
-  filtered(filter, second, false);
+  filteredWithoutLabels(filter, second);
   EXPECT_TRUE(filtered(filter, {}).empty());
   EXPECT_TRUE(sameBits(filtered(filter, first), expected));
-  filter.start(true);  // abandoned
-  filter.add({1.0F, 1.0F, 1.0F}, StructuralLabel::Noise);
-  EXPECT_TRUE(sameBits(filtered(filter, first), expected));
+}
+
+TEST(SourceVoxelFilter, FarVoxelsAreApart) {
+  // The farthest voxels along each axis, and those beside them.
+  std::vector<Point> points;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float place : {524287.5F, 524286.5F, -524286.5F, -524285.5F, 0.5F}) {
+      Eigen::Vector3f point(0.5F, 0.5F, 0.5F);
+      point[axis] = place;
+      points.push_back({point, StructuralLabel::Noise});
+    }
+  }
+  SourceVoxelFilter filter(1.0);
+  const SourcePoints source = filtered(filter, points);
+  ASSERT_EQ(source.size(), 13U);  // that in the middle is met thrice
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(source.x[i], points[i].position.x());
+  EXPECT_EQ(source.z[12], points[13].position.z());
+}
+
+TEST(SourceVoxelFilter, TakesWhatIsSelectedIntoTheBaseFrame) {
+  const std::vector<Point> points = randomPoints(10, 5000, 6.0F);
+  SourceSelection selection;
+  selection.ground_ratio = 0.37;
+  selection.confidence = ConfidenceOptions::paper();
+  selection.T_base_lidar.rotate(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()));
+  selection.T_base_lidar.translation() << 1.2, -0.3, 1.9;
+  std::vector<Point> selected;
+  GroundSampler sampler({selection.ground_ratio});
+  for (const Point& point : points) {
+    if (point.label == StructuralLabel::Noise) continue;
+    if (point.label == StructuralLabel::Ground && !sampler.keepsNext()) continue;
+    selected.push_back({selection.T_base_lidar.cast<float>() * point.position, point.label});
+  }
+  for (const double voxel_size_m : {0.2, 0.0}) {
+    SourceVoxelFilter filter(voxel_size_m), reference(voxel_size_m);
+    const SourcePoints source = filtered(filter, points, selection);
+    EXPECT_GT(source.size(), 1000U);
+    EXPECT_TRUE(sameBits(source, filtered(reference, selected)));
+  }
+}
+
+TEST(SourceVoxelFilter, EveryInstructionSetGivesTheSameBits) {
+  std::vector<Point> points = randomPoints(11, 3001, 7.0F);
+  points[5].position.y() = std::numeric_limits<float>::quiet_NaN();
+  SourceSelection selection;
+  selection.ground_ratio = 0.5;
+  selection.T_base_lidar.rotate(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()));
+  SourceVoxelFilter filter(0.2);
+  const SourcePoints expected = filtered(filter, points, selection);
+  for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+    limitInstructionSet(set);
+    EXPECT_TRUE(sameBits(filtered(filter, points, selection), expected)) << toString(set);
+  }
+}
+
+TEST(SourceVoxelFilter, RefusesLabelsOfAnotherScan) {
+  const Scan scan(randomPoints(12, 10, 1.0F));
+  const std::vector<StructuralLabel> few(9, StructuralLabel::Ground);
+  SourceVoxelFilter filter(0.2);
+  expectThrows<std::invalid_argument>([&] { filter.filter(scan.view(), &few); }, {"labels: 9 for 10 points"});
+  SourceSelection selection;
+  selection.ground_ratio = 1.5;
+  expectThrows<std::invalid_argument>([&] { filter.filter(scan.view(), nullptr, selection); }, {"ground_ratio = 1.5"});
 }
 
 TEST(SourceVoxelFilter, RefusesSizesThatAreNone) {

@@ -15,17 +15,19 @@ TEST(ScanSegmenter, AllocatesNothingInTheSteadyState) {
   const auto rough = ringOrderedScan(sensor, [&](int row, int column) {
     return (row + column) % 17 == 0 ? kNoReturn : 5.0 + (row * 31 + column * 17) % 13;
   });
-  ScanSegmenter segmenter;
-  std::vector<StructuralLabel> labels;
-  pcl::Indices kept;
-  segmenter.segment(viewOf(smooth), labels);
-  subsampleGround(labels, {1.0}, kept);
-  const long before = allocation_count;
-  for (const auto* scan : {&rough, &smooth, &rough}) {
-    segmenter.segment(viewOf(*scan), labels);
-    subsampleGround(labels, {0.5}, kept);
+  for (const int threads : {1, 3}) {
+    ScanSegmenter segmenter;
+    std::vector<StructuralLabel> labels;
+    pcl::Indices kept;
+    segmenter.segment(viewOf(smooth), labels, threads);
+    subsampleGround(labels, {1.0}, kept);
+    const long before = allocation_count;
+    for (const auto* scan : {&rough, &smooth, &rough}) {
+      segmenter.segment(viewOf(*scan), labels, threads);
+      subsampleGround(labels, {0.5}, kept);
+    }
+    EXPECT_EQ(allocation_count - before, 0) << threads;
   }
-  EXPECT_EQ(allocation_count - before, 0);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "saw_ndt/common/instruction_set.h"
 #include "segmentation/synthetic_scan.h"
 
 namespace saw_ndt {
@@ -129,6 +130,94 @@ TEST_P(BothRules, PointsThatAreNotFiniteAreNoise) {
   segmenter.segment(viewOf(scan), labels);
   EXPECT_EQ(std::count(labels.begin(), labels.end(), StructuralLabel::Noise),
             static_cast<std::ptrdiff_t>(labels.size()));
+}
+
+// Rough surfaces, so that there are components of all sizes, on ground that is there in parts.
+double roughRange(int row, int column) {
+  const std::uint32_t number = static_cast<std::uint32_t>(row / 3 * 977 + column / 7) * 2654435761U >> 16;
+  if (number % 5 == 0) return kNoReturn;
+  if (number % 3 == 0) return rangeToFlatGround(testSensor(), row, 40.0);
+  return 4.0 + 0.37 * (number % 41) + 0.01 * (column % 7);
+}
+
+TEST_P(BothRules, LabelsDependOnNeitherThreadsNorInstructionSet) {
+  const SensorModel sensor = testSensor();
+  const auto organized = organizedScan(sensor, roughRange);
+  auto damaged = ringOrderedScan(sensor, roughRange);
+  for (std::size_t i = 0; i < damaged.size(); i += 13) damaged[i].y = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 5; i < damaged.size(); i += 13) damaged[i].z = -std::numeric_limits<float>::infinity();
+  auto shuffled = damaged;
+  std::reverse(shuffled.begin(), shuffled.end());
+  const pcl::PointCloud<pcl::PointXYZ> empty;
+  const std::vector<const pcl::PointCloud<pcl::PointXYZ>*> scans = {&organized, &damaged, &shuffled, &empty};
+  for (const auto* scan : scans) {
+    ScanSegmenter segmenter(testOptions(GetParam()));
+    std::vector<StructuralLabel> expected;
+    segmenter.segment(viewOf(*scan), expected);
+    const std::vector<StructuralLabel> expected_pixels = segmenter.pixelLabels();
+    const std::vector<std::int32_t> expected_pixel_of_point = segmenter.rangeImage().pixelOfPoint();
+    EXPECT_EQ(expected.size(), scan->size());
+    for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+      limitInstructionSet(set);
+      for (const int threads : {1, 2, 3, 7, 40}) {
+        std::vector<StructuralLabel> labels;
+        segmenter.segment(viewOf(*scan), labels, threads);
+        EXPECT_EQ(labels, expected) << toString(set) << ", " << threads << " threads";
+        EXPECT_EQ(segmenter.pixelLabels(), expected_pixels);
+        EXPECT_EQ(segmenter.rangeImage().pixelOfPoint(), expected_pixel_of_point);
+      }
+    }
+  }
+}
+
+// The components that flood-filling finds, by LeGO-LOAM's criterion in double precision.
+TEST(ComponentFilter, FindsWhatFloodFillingFinds) {
+  const SensorModel sensor = testSensor();
+  const auto scan = organizedScan(sensor, roughRange);
+  ScanSegmenter segmenter(testOptions(GroundRule::Growing));
+  std::vector<StructuralLabel> labels;
+  segmenter.segment(viewOf(scan), labels, 3);
+  const int columns = sensor.columns;
+  const RangeImage& image = segmenter.rangeImage();
+  const auto isObstacle = [&](int pixel) {
+    return image.range()[pixel] > 0.0F && segmenter.pixelLabels()[pixel] != StructuralLabel::Ground;
+  };
+  const auto connected = [&](int first, int second, double apart_deg) {
+    const double apart = radiansFromDegrees(apart_deg);
+    const double farther = std::max(image.range()[first], image.range()[second]);
+    const double nearer = std::min(image.range()[first], image.range()[second]);
+    return std::atan2(nearer * std::sin(apart), farther - nearer * std::cos(apart)) > radiansFromDegrees(60.0);
+  };
+  std::vector<bool> seen(image.range().size(), false);
+  int large = 0, small = 0;
+  for (int seed = 0; seed < static_cast<int>(seen.size()); ++seed) {
+    if (seen[seed] || !isObstacle(seed)) continue;
+    seen[seed] = true;
+    std::vector<int> component = {seed};
+    int points = 0, top_row = seed / columns, bottom_row = top_row;
+    for (std::size_t next = 0; next < component.size(); ++next) {
+      const int pixel = component[next], row = pixel / columns, column = pixel % columns;
+      points += image.returns()[pixel];
+      top_row = std::min(top_row, row);
+      bottom_row = std::max(bottom_row, row);
+      const auto visit = [&](int neighbour, double apart_deg) {
+        if (seen[neighbour] || !isObstacle(neighbour) || !connected(pixel, neighbour, apart_deg)) return;
+        seen[neighbour] = true;
+        component.push_back(neighbour);
+      };
+      visit(row * columns + (column + 1) % columns, 360.0 / columns);
+      visit(row * columns + (column + columns - 1) % columns, 360.0 / columns);
+      if (row > 0) visit(pixel - columns, sensor.elevations_deg[row - 1] - sensor.elevations_deg[row]);
+      if (row + 1 < sensor.rows()) visit(pixel + columns, sensor.elevations_deg[row] - sensor.elevations_deg[row + 1]);
+    }
+    const bool kept = points >= 30 || (points >= 5 && bottom_row - top_row + 1 >= 3);
+    ++(kept ? large : small);
+    for (const int pixel : component) {
+      ASSERT_EQ(segmenter.pixelLabels()[pixel], kept ? StructuralLabel::NonGround : StructuralLabel::Noise) << pixel;
+    }
+  }
+  EXPECT_GT(large, 100);
+  EXPECT_GT(small, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(ScanSegmenter, BothRules, ::testing::Values(GroundRule::Inclination, GroundRule::Growing),

@@ -13,8 +13,7 @@ enum class GroundRule {
   /// The paper's and LeGO-LOAM's: the line between vertically adjacent pixels is nearly level.
   Inclination,
   /// Ground is followed outward from below the sensor, column by column: a return belongs to it where it lies on from
-  /// the
-  /// last ground return and near the height that ground may have reached by then; then neighbours settle what is
+  /// the last ground return and near the height that ground may have reached by then; then neighbours settle what is
   /// doubtful.
   Growing,
 };
@@ -50,16 +49,23 @@ struct GroundOptions {
 class GroundDetection {
  public:
   /// Writes 1 for every pixel of the image that is ground and 0 for every other, row-major. The options have been
-  /// checked, and the image was projected with the sensor model.
+  /// checked, and the image was projected with the sensor model. The result does not depend on the number of threads.
   void detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
-              std::vector<std::uint8_t>& ground);
+              std::vector<std::uint8_t>& ground, int threads = 1);
 
  private:
+  /// Sums over three rows, with one column more at either side.
+  struct NeighbourSums {
+    std::vector<std::uint8_t> returns;
+    std::vector<std::uint8_t> ground;
+  };
+
   static void detectByInclination(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
                                   std::vector<std::uint8_t>& ground);
-  void grow(const RangeImage& image, const GroundOptions& options);
   float estimatedSensorHeight(const RangeImage& image, const GroundOptions& options);
-  void smooth(const RangeImage& image, std::vector<std::uint8_t>& ground);
+  void grow(const RangeImage& image, const GroundOptions& options, std::size_t first_column, std::size_t columns);
+  void settle(const RangeImage& image, int row, bool smooths, NeighbourSums& sums,
+              std::vector<std::uint8_t>& ground) const;
 
   std::vector<float> last_range_;
   std::vector<float> last_height_;
@@ -67,8 +73,7 @@ class GroundDetection {
   std::vector<float> candidate_heights_;
   std::vector<std::uint8_t> states_;
   std::vector<std::uint8_t> no_returns_;
-  std::vector<std::uint8_t> padded_returns_;
-  std::vector<std::uint8_t> padded_ground_;
+  std::vector<NeighbourSums> neighbour_sums_;  ///< one a thread
 };
 
 }  // namespace saw_ndt

@@ -28,12 +28,20 @@ class GroundSampler {
   explicit GroundSampler(const GroundSubsamplingOptions& options);
 
   /// Counts one more ground point and tells whether it is kept.
-  bool keepsNext();
+  bool keepsNext() { return keepsNext(true); }
+  /// The same for one more point that may be no ground, which is not counted but kept. Without a branch.
+  bool keepsNext(bool is_ground) {
+    counted_ += static_cast<std::int64_t>(is_ground);
+    const auto kept = static_cast<std::int64_t>(static_cast<double>(counted_) * ratio_);
+    const bool keeps = !is_ground | (kept > kept_);
+    kept_ = kept;
+    return keeps;
+  }
 
  private:
   double ratio_;
-  std::uint64_t counted_ = 0;
-  std::uint64_t kept_ = 0;
+  std::int64_t counted_ = 0;
+  std::int64_t kept_ = 0;
 };
 
 /// Writes the positions in `labels` of the points that subsampling keeps: the share of ground points that GroundSampler

@@ -20,8 +20,9 @@ class RangeImage {
 
   /// Projects a scan. Heights are levelled by the mounting pitch: the angle in radians by which the sensor's x axis
   /// points below the horizon. Where several points share a pixel, the nearest to the sensor stands for it. Throws
-  /// std::invalid_argument where the sensor model is not valid or the scan has more than 2^31 - 1 points.
-  void project(const ScanView& scan, const SensorModel& sensor, double mounting_pitch = 0.0);
+  /// std::invalid_argument where the sensor model is not valid or the scan has more than 2^31 - 1 points. The image
+  /// does not depend on the number of threads.
+  void project(const ScanView& scan, const SensorModel& sensor, double mounting_pitch = 0.0, int threads = 1);
 
   int rows() const { return rows_; }
   int columns() const { return columns_; }
@@ -43,8 +44,19 @@ class RangeImage {
   VerticalIndexSource verticalIndexSource() const { return ring_index_.source(); }
 
  private:
-  void measurePoints(const ScanView& scan, double mounting_pitch);
-  void placePoints(std::size_t point_count);
+  /// The returns of some pixels while points are placed, and one element more, for points that are in none of them.
+  struct PixelReturns {
+    /// Range of the nearest return as bits, above the number of its point: the least of such keys is the nearest, and
+    /// the first of several that are as near.
+    std::vector<std::uint64_t> nearest;
+    std::vector<std::uint16_t> count;
+  };
+
+  void measure(const ScanView& scan, double mounting_pitch, int threads);
+  void placeRun(const RowRun& run, PixelReturns& returns);
+  void placeInAnyOrder(PixelReturns& returns);
+  void placePoints(std::size_t begin, std::size_t end, std::size_t first_pixel, std::size_t pixels,
+                   PixelReturns& returns);
 
   int rows_ = 0;
   int columns_ = 0;
@@ -55,6 +67,8 @@ class RangeImage {
   std::vector<std::int32_t> pixel_of_point_;
   PointMeasurements points_;
   RingIndex ring_index_;
+  std::vector<RowRun> run_of_row_;
+  std::vector<PixelReturns> pixel_returns_;  ///< one a thread
 };
 
 }  // namespace saw_ndt

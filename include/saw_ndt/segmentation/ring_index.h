@@ -17,12 +17,31 @@ enum class VerticalIndexSource {
   ElevationTable,  ///< the beam of the sensor model that is nearest in elevation
 };
 
+/// Least and greatest column of some points; the least is above the greatest where none of them has a column.
+struct ColumnSpan {
+  std::uint16_t least;
+  std::uint16_t greatest;
+};
+
 /// What projection needs of every point, in input order. Memory is kept between scans.
 struct PointMeasurements {
-  std::vector<std::int32_t> column;     ///< of the range image; means nothing where range is 0
+  /// Column of a point that is not finite or at the origin.
+  static constexpr std::uint16_t kNoColumn = 0xFFFF;
+  /// How many points share an element of `spans`.
+  static constexpr std::size_t kBlock = 128;
+
+  std::vector<std::uint16_t> column;    ///< of the range image, or kNoColumn
   std::vector<float> range;             ///< metres; 0 where the point is not finite or at the origin
   std::vector<float> horizontal_range;  ///< metres, levelled
   std::vector<float> height;            ///< metres, levelled
+  std::vector<ColumnSpan> spans;        ///< of every kBlock points
+};
+
+/// Successive points of one row.
+struct RowRun {
+  std::size_t begin;
+  std::size_t end;
+  std::int16_t row;
 };
 
 /// Recovers the vertical scan index of every point of a scan.
@@ -36,7 +55,13 @@ class RingIndex {
   /// beam table.
   void assign(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
 
-  /// Row of each point, 0 at the top, or kNoRow.
+  /// Whether the scan lists its points row after row, each row once, as organized clouds and those in file order do.
+  bool rowAfterRow() const {
+    return source_ == VerticalIndexSource::OrganizedRow || source_ == VerticalIndexSource::FileOrder;
+  }
+  /// Rows of a scan that lists them one after the other, in the order of the scan; together they hold every point.
+  const std::vector<RowRun>& runs() const { return runs_; }
+  /// Row of each point of another scan, 0 at the top, or kNoRow.
   const std::vector<std::int16_t>& rows() const { return rows_; }
   VerticalIndexSource source() const { return source_; }
 
@@ -44,13 +69,12 @@ class RingIndex {
   bool findRuns(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
   bool assignFromFileOrder(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
   void assignFromElevation(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
-  void putLowestRowLast(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
+  bool rowsRise(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) const;
   bool matchRunsToBeams(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
 
   std::vector<std::int16_t> rows_;
   VerticalIndexSource source_ = VerticalIndexSource::ElevationTable;
-  std::vector<std::size_t> run_starts_;
-  std::vector<std::int16_t> row_of_run_;
+  std::vector<RowRun> runs_;
   std::vector<float> samples_;
   std::vector<float> run_elevations_;
   std::vector<float> run_spreads_;

@@ -37,8 +37,9 @@ class ScanSegmenter {
   const SegmentationOptions& options() const { return options_; }
 
   /// Writes the label of every point in input order. Points that are not finite, at the sensor's origin or outside of
-  /// its field of view are Noise; all points of a pixel have the same label.
-  void segment(const ScanView& scan, std::vector<StructuralLabel>& labels);
+  /// its field of view are Noise; all points of a pixel have the same label. Labels do not depend on the number of
+  /// threads (1 or more).
+  void segment(const ScanView& scan, std::vector<StructuralLabel>& labels, int threads = 1);
 
   /// The image of the last scan, and the label of each of its pixels.
   const RangeImage& rangeImage() const { return image_; }

@@ -1,0 +1,70 @@
+// Segmentation of a scan by ScanSegmenter and its stages.
+
+#include <vector>
+
+#include "benchmark_program.h"
+#include "benchmark_scans.h"
+#include "saw_ndt/common/geometry.h"
+#include "saw_ndt/segmentation/cloud_view.h"
+#include "saw_ndt/segmentation/scan_segmenter.h"
+
+namespace {
+
+/// A scan and what the stages before one make of it.
+struct Stages {
+  saw_ndt::SegmentationOptions options;
+  saw_ndt::ScanView scan = saw_ndt::viewOf(saw_ndt::benchmarkScan());
+  saw_ndt::RangeImage image;
+  saw_ndt::GroundDetection ground_detection;
+  saw_ndt::ComponentFilter component_filter;
+  std::vector<std::uint8_t> ground;
+  std::vector<saw_ndt::StructuralLabel> labels;
+
+  void project(int threads) {
+    image.project(scan, options.sensor, saw_ndt::radiansFromDegrees(options.mounting_pitch_deg), threads);
+  }
+  void detectGround(int threads) { ground_detection.detect(image, options.sensor, options.ground, ground, threads); }
+  void filterComponents(int threads) {
+    component_filter.label(image, options.sensor, ground, options.components, labels, threads);
+  }
+};
+
+void projectScan(benchmark::State& state, int threads) {
+  Stages stages;
+  for (auto _ : state) stages.project(threads);
+  saw_ndt::setTimePer(state, "point", stages.scan.size);
+}
+
+void detectGround(benchmark::State& state, int threads) {
+  Stages stages;
+  stages.project(threads);
+  for (auto _ : state) stages.detectGround(threads);
+  saw_ndt::setTimePer(state, "point", stages.scan.size);
+}
+
+void filterComponents(benchmark::State& state, int threads) {
+  Stages stages;
+  stages.project(threads);
+  stages.detectGround(threads);
+  for (auto _ : state) stages.filterComponents(threads);
+  saw_ndt::setTimePer(state, "point", stages.scan.size);
+}
+
+void segment(benchmark::State& state, int threads) {
+  const saw_ndt::ScanView scan = saw_ndt::viewOf(saw_ndt::benchmarkScan());
+  saw_ndt::ScanSegmenter segmenter;
+  std::vector<saw_ndt::StructuralLabel> labels;
+  for (auto _ : state) segmenter.segment(scan, labels, threads);
+  saw_ndt::setTimePer(state, "point", scan.size);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return saw_ndt::runBenchmarkProgram(argc, argv, [] {
+    saw_ndt::registerForEachInstructionSet("project", projectScan);
+    saw_ndt::registerForEachInstructionSet("ground", detectGround);
+    saw_ndt::registerForEachInstructionSet("components", filterComponents);
+    saw_ndt::registerForEachInstructionSet("segment", segment);
+  });
+}
