@@ -49,7 +49,7 @@ std::uint64_t addRange(const ScanView& points, const std::uint32_t* labels, std:
       const auto run_size = static_cast<std::size_t>(run.sum_count[3]);
       if (block->label[point] != kNoVoxel) {
         const VoxelCoordinate voxel(block->voxel[0][point], block->voxel[1][point], block->voxel[2][point]);
-        VoxelSums& sums = table.at(voxel, static_cast<StructuralLabel>(block->label[point]));
+        VoxelSums& sums = table.sums(table.placeOf(voxel, static_cast<StructuralLabel>(block->label[point])));
         sums.count += run_size;
         for (std::size_t j = 0; j < 3; ++j) sums.sum[j] += run.sum_count[j];
         for (std::size_t j = 0; j < 6; ++j) sums.product[j] += run.product[j];
@@ -122,8 +122,8 @@ void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
   origin_.point_count += other.origin_.point_count;
 }
 
-WeightedVoxelMap WeightedMapBuilder::build(const VoxelWeighting& weighting, int) const {
-  return {origin_, table_.entries(), weighting};
+WeightedVoxelMap WeightedMapBuilder::build(const VoxelWeighting& weighting, int threads) const {
+  return {origin_, table_.entries(), weighting, threads};
 }
 
 }  // namespace saw_ndt

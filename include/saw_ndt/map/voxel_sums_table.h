@@ -37,10 +37,10 @@ class VoxelSumsTable {
     return place;
   }
 
-  /// The sums of `label` in `voxel`, made empty where there are none yet. Valid until the next call.
-  VoxelSums& at(const VoxelCoordinate& voxel, StructuralLabel label) { return entries_[placeOf(voxel, label)].sums; }
+  /// The sums at a place in entries().
+  VoxelSums& sums(std::size_t place) { return entries_[place].sums; }
 
-  void add(const LabelledVoxelSums& entry) { at(entry.voxel, entry.label) += entry.sums; }
+  void add(const LabelledVoxelSums& entry) { sums(placeOf(entry.voxel, entry.label)) += entry.sums; }
   void add(const VoxelSumsTable& other) {
     for (const LabelledVoxelSums& entry : other.entries_) add(entry);
   }
