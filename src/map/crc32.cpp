@@ -35,9 +35,9 @@ std::uint32_t crc32(const char* bytes, std::size_t size) {
   const auto* const end = at + size;
   std::uint32_t remainder = 0xFFFFFFFFU;
   for (; static_cast<std::size_t>(end - at) >= kStride; at += kStride) {
-    const std::uint32_t first = remainder ^ (static_cast<std::uint32_t>(at[0]) | static_cast<std::uint32_t>(at[1]) << 8 |
-                                             static_cast<std::uint32_t>(at[2]) << 16 |
-                                             static_cast<std::uint32_t>(at[3]) << 24);
+    const std::uint32_t first =
+        remainder ^ (static_cast<std::uint32_t>(at[0]) | static_cast<std::uint32_t>(at[1]) << 8 |
+                     static_cast<std::uint32_t>(at[2]) << 16 | static_cast<std::uint32_t>(at[3]) << 24);
     remainder = kTables[7][first & 0xFFU] ^ kTables[6][(first >> 8) & 0xFFU] ^ kTables[5][(first >> 16) & 0xFFU] ^
                 kTables[4][first >> 24] ^ kTables[3][at[4]] ^ kTables[2][at[5]] ^ kTables[1][at[6]] ^ kTables[0][at[7]];
   }
