@@ -336,7 +336,7 @@ int runApp(int argc, const char* const* argv, AppOptions& app, const std::functi
   };
   try {
     if (app.parse(argc, argv)) {
-      omp_set_num_threads(app.threads());  // also for parallel loops that are not told how many, such as reading a map
+      omp_set_num_threads(app.threads());  // also for parallel loops that are not told how many
       work();
     } else {
       std::cout << app.help();

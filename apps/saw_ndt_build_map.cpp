@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
 
     saw_ndt::ProgressBar progress(selected.size());
     const saw_ndt::WeightedVoxelMap map =
-        saw_ndt::buildSequenceMap(sequence, selected, options, [&] { progress.step(); }).build();
+        saw_ndt::buildSequenceMap(sequence, selected, options, [&] { progress.step(); }).build({}, options.threads);
     map.save(map_file);
     std::cout << map_file << ": " << map.fine().size() << " voxels of " << map.resolution() << " m from "
               << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";

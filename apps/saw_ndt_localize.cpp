@@ -19,8 +19,9 @@ constexpr char kDescription[] =
     "pose, and all together they tell the errors.";
 
 std::shared_ptr<const saw_ndt::WeightedVoxelMap> loadMap(const std::string& file,
-                                                         const saw_ndt::LocalizationMethod& method) {
-  auto map = std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(file, method.voxels));
+                                                         const saw_ndt::LocalizationMethod& method, int threads) {
+  auto map =
+      std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(file, method.voxels, threads));
   if (method.segment && !map->labelled()) {
     throw saw_ndt::Error(file, "",
                          "was built with -classical: it has no labels, which the method " + method.name +
@@ -81,7 +82,7 @@ int main(int argc, char** argv) {
     }
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
-    saw_ndt::Localizer localizer(loadMap(map_file, options.method), options);
+    saw_ndt::Localizer localizer(loadMap(map_file, options.method, app.threads()), options);
     localizer.setInitialPose(app.isGiven("initial-pose") ? saw_ndt::transformOf(initial_pose)
                                                          : reference_lidar[static_cast<std::size_t>(selected.front())] *
                                                                options.T_base_lidar.inverse());

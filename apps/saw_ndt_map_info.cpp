@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
                 "(1 linear, 2 planar, 3 volumetric) and weight");
 
   return saw_ndt::runApp(argc, argv, app, [&] {
-    const saw_ndt::WeightedVoxelMap map = saw_ndt::WeightedVoxelMap::load(map_file);
+    const saw_ndt::WeightedVoxelMap map = saw_ndt::WeightedVoxelMap::load(map_file, {}, app.threads());
     if (!pcd_file.empty()) {
       pcl::PCLPointCloud2 voxels;
       pcl::toPCLPointCloud2(saw_ndt::voxelCloud(map), voxels);

@@ -1,6 +1,5 @@
 #include "saw_ndt/map/map_file.h"
 
-#include <boost/crc.hpp>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -8,6 +7,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "map/crc32.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/atomic_output.h"
 #include "saw_ndt/map/map_tile.h"
@@ -23,21 +23,15 @@ constexpr std::size_t kTileRecordBytes = 40;
 constexpr std::size_t kEntryBytes = 84;
 constexpr std::uint32_t kLabelledFlag = 1;
 
-std::uint32_t crc32(const char* bytes, std::size_t size) {
-  boost::crc_32_type crc;
-  crc.process_bytes(bytes, size);
-  return crc.checksum();
-}
-
 class Encoder {
  public:
   template <typename Integer>
   void put(Integer value) {
     using Unsigned = std::make_unsigned_t<Integer>;
-    const auto bits = static_cast<Unsigned>(value);
-    for (std::size_t i = 0; i < sizeof(Integer); ++i) {
-      bytes_.push_back(static_cast<char>(static_cast<std::uint64_t>(bits) >> (8 * i)));
-    }
+    const auto bits = static_cast<std::uint64_t>(static_cast<Unsigned>(value));
+    char bytes[sizeof(Integer)];
+    for (std::size_t i = 0; i < sizeof(Integer); ++i) bytes[i] = static_cast<char>(bits >> (8 * i));
+    put(bytes, sizeof bytes);
   }
   void put(double value) {
     std::uint64_t bits;

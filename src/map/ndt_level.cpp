@@ -2,10 +2,14 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <exception>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include "map/merged_voxel.h"
+#include "saw_ndt/common/threads.h"
 #include "saw_ndt/map/voxel_sums_table.h"
 
 namespace saw_ndt {
@@ -30,27 +34,94 @@ LabelledVoxelSums inParent(const LabelledVoxelSums& child, int factor) {
   return parent;
 }
 
-bool inVoxelOrder(const LabelledVoxelSums& a, const LabelledVoxelSums& b) {
-  for (const int axis : {2, 1, 0}) {
-    if (a.voxel[axis] != b.voxel[axis]) return a.voxel[axis] < b.voxel[axis];
+// Puts labels of a voxel together: those that take part, while points are counted by label.
+class LabelMerger {
+ public:
+  explicit LabelMerger(const ConfidenceOptions& confidence) {
+    for (std::size_t label = 0; label < confidence_.size(); ++label) {
+      confidence_[label] = confidence.of(static_cast<StructuralLabel>(label));
+    }
   }
-  return a.label < b.label;
+
+  using Counts = std::array<std::uint64_t, kStructuralLabelCount>;
+
+  bool takesPart(StructuralLabel label) const { return confidence_[static_cast<std::size_t>(label)] > 0.0; }
+
+  MergedVoxel merged(const VoxelCoordinate& voxel, const VoxelSums& sums, const Counts& counts) const {
+    double confidence_sum = 0.0;
+    for (std::size_t label = 0; label < counts.size(); ++label) {
+      confidence_sum += confidence_[label] * static_cast<double>(counts[label]);
+    }
+    return {voxel, sums, confidence_sum / static_cast<double>(sums.count)};
+  }
+
+ private:
+  std::array<double, kStructuralLabelCount> confidence_;
+};
+
+// The next voxels, a batch at most, of entries `first` to `last`, which hold the entries of a voxel one after the
+// other. Moves `first` behind them.
+void mergeLabels(const LabelledVoxelSums*& first, const LabelledVoxelSums* last, const LabelMerger& merger,
+                 std::vector<MergedVoxel>& voxels) {
+  constexpr std::size_t kBatch = 256;
+  voxels.clear();
+  while (first != last && voxels.size() < kBatch) {
+    const VoxelCoordinate& voxel = first->voxel;
+    VoxelSums sums;
+    LabelMerger::Counts counts{};
+    for (; first != last && first->voxel == voxel; ++first) {
+      if (!merger.takesPart(first->label)) continue;
+      sums += first->sums;
+      counts[static_cast<std::size_t>(first->label)] = first->sums.count;
+    }
+    if (sums.count > 0) voxels.push_back(merger.merged(voxel, sums, counts));
+  }
 }
 
-// Merges the labels of one voxel, `first` to `last`.
-std::optional<VoxelStatistics> voxelOf(const LabelledVoxelSums* first, const LabelledVoxelSums* last,
-                                       const VoxelWeighting& weighting, double metres_per_step) {
-  VoxelSums sums;
-  double confidence_sum = 0.0;
-  for (const LabelledVoxelSums* entry = first; entry != last; ++entry) {
-    const double confidence = weighting.confidence.of(entry->label);
-    if (confidence <= 0.0) continue;
-    sums += entry->sums;
-    confidence_sum += confidence * static_cast<double>(entry->sums.count);
+// The voxels of `factor` times the size, in the order in which the first entry of each is met.
+std::vector<MergedVoxel> mergeChildren(const std::vector<LabelledVoxelSums>& entries, int factor,
+                                       const LabelMerger& merger) {
+  VoxelSumsTable table;
+  std::vector<LabelMerger::Counts> counts;
+  for (const LabelledVoxelSums& entry : entries) {
+    if (!merger.takesPart(entry.label)) continue;
+    const LabelledVoxelSums parent = inParent(entry, factor);
+    // Labels are put together here and now: all go under one.
+    const std::size_t place = table.placeOf(parent.voxel, StructuralLabel::NonGround);
+    table.sums(place) += parent.sums;
+    if (place == counts.size()) counts.push_back({});
+    counts[place][static_cast<std::size_t>(entry.label)] += parent.sums.count;
   }
-  if (sums.count == 0) return std::nullopt;
-  return voxelStatistics(first->voxel, sums, confidence_sum / static_cast<double>(sums.count), weighting,
-                         metres_per_step);
+  std::vector<MergedVoxel> voxels;
+  voxels.reserve(counts.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const LabelledVoxelSums& entry = table.entries()[i];
+    voxels.push_back(merger.merged(entry.voxel, entry.sums, counts[i]));
+  }
+  return voxels;
+}
+
+// What `append(first, last, part)` appends of 0 to `count`, put together in order, by several threads.
+template <typename Append>
+std::vector<VoxelStatistics> inParts(std::size_t count, int threads, const Append& append) {
+  constexpr std::size_t kLeastPerThread = 1000;
+  const std::size_t part_count =
+      std::clamp<std::size_t>(count / kLeastPerThread, 1, static_cast<std::size_t>(threadCount(threads)));
+  std::vector<std::vector<VoxelStatistics>> parts(part_count);
+  std::exception_ptr failure;
+#pragma omp parallel for num_threads(static_cast <int>(part_count)) schedule(static)
+  for (std::size_t p = 0; p < part_count; ++p) {
+    try {
+      append(count * p / part_count, count * (p + 1) / part_count, parts[p]);
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  std::vector<VoxelStatistics> whole = std::move(parts.front());
+  for (std::size_t p = 1; p < part_count; ++p) whole.insert(whole.end(), parts[p].begin(), parts[p].end());
+  return whole;
 }
 
 }  // namespace
@@ -86,34 +157,31 @@ NdtLevel::NdtLevel(double resolution_m, const std::vector<VoxelStatistics>& voxe
 }
 
 NdtLevel NdtLevel::fromSums(const std::vector<LabelledVoxelSums>& entries, double resolution_m, int factor,
-                            const VoxelWeighting& weighting) {
-  std::vector<LabelledVoxelSums> parents;
-  if (factor > 1) {
-    VoxelSumsTable table;
-    for (const LabelledVoxelSums& entry : entries) table.add(inParent(entry, factor));
-    parents = table.entries();
-    std::sort(parents.begin(), parents.end(), inVoxelOrder);
-  }
-  const std::vector<LabelledVoxelSums>& grouped = factor > 1 ? parents : entries;
-
-  std::vector<std::size_t> firsts;
-  for (std::size_t i = 0; i < grouped.size(); ++i) {
-    if (i == 0 || grouped[i].voxel != grouped[i - 1].voxel) firsts.push_back(i);
-  }
-  firsts.push_back(grouped.size());
+                            const VoxelWeighting& weighting, int threads) {
+  const LabelMerger merger(weighting.confidence);
   const double metres_per_step = resolution_m / kStepsPerVoxel;
-  std::vector<std::optional<VoxelStatistics>> candidates(firsts.size() - 1);
-  const auto voxel_count = static_cast<std::ptrdiff_t>(candidates.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t i = 0; i < voxel_count; ++i) {
-    const auto v = static_cast<std::size_t>(i);
-    candidates[v] = voxelOf(grouped.data() + firsts[v], grouped.data() + firsts[v + 1], weighting, metres_per_step);
+  using Part = std::vector<VoxelStatistics>;
+  if (factor > 1) {
+    const std::vector<MergedVoxel> parents = mergeChildren(entries, factor, merger);
+    const auto append = [&](std::size_t first, std::size_t last, Part& part) {
+      appendVoxelStatistics(parents.data() + first, last - first, weighting, metres_per_step, part);
+    };
+    return NdtLevel(resolution_m * factor, inParts(parents.size(), threads, append));
   }
-  std::vector<VoxelStatistics> voxels;
-  for (const auto& candidate : candidates) {
-    if (candidate) voxels.push_back(*candidate);
-  }
-  return NdtLevel(resolution_m * factor, voxels);
+  const auto startOfVoxel = [&](std::size_t i) {
+    while (i > 0 && i < entries.size() && entries[i].voxel == entries[i - 1].voxel) ++i;
+    return entries.data() + i;
+  };
+  const auto append = [&](std::size_t first, std::size_t last, Part& part) {
+    std::vector<MergedVoxel> voxels;
+    const LabelledVoxelSums* next = startOfVoxel(first);
+    const LabelledVoxelSums* const end = startOfVoxel(last);
+    while (next != end) {
+      mergeLabels(next, end, merger, voxels);
+      appendVoxelStatistics(voxels.data(), voxels.size(), weighting, metres_per_step, part);
+    }
+  };
+  return NdtLevel(resolution_m, inParts(entries.size(), threads, append));
 }
 
 VoxelStatistics NdtLevel::voxel(std::size_t i) const {

@@ -11,23 +11,50 @@ struct BrickRange {
 };
 BrickRange bricksThatHold(int local) { return {local == 0 ? -1 : 0, local == VoxelIndex::kBrickSize - 1 ? 1 : 0}; }
 
+// Calls visit(brick, place of the voxel's cell in it) for every brick that holds a voxel, in its border or not.
+template <typename Visit>
+void forEachBrickWith(const VoxelCoordinate& voxel, const Visit& visit) {
+  const Eigen::Vector3i brick(voxel.x() >> VoxelIndex::kBrickBits, voxel.y() >> VoxelIndex::kBrickBits,
+                              voxel.z() >> VoxelIndex::kBrickBits);
+  const Eigen::Vector3i local = voxel - brick * VoxelIndex::kBrickSize;
+  const BrickRange xs = bricksThatHold(local.x()), ys = bricksThatHold(local.y()), zs = bricksThatHold(local.z());
+  for (int dz = zs.first; dz <= zs.last; ++dz) {
+    for (int dy = ys.first; dy <= ys.last; ++dy) {
+      for (int dx = xs.first; dx <= xs.last; ++dx) {
+        const Eigen::Vector3i at = local - VoxelIndex::kBrickSize * Eigen::Vector3i(dx, dy, dz);
+        visit(brick + Eigen::Vector3i(dx, dy, dz), VoxelIndex::neighbourOffset(at.x() + 1, at.y() + 1, at.z() + 1));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 VoxelIndex::VoxelIndex(const std::vector<VoxelCoordinate>& voxels) : slots_(64) {
+  // The bricks are counted first, so that their memory is taken once and never moved. Voxels that follow each other
+  // often touch the same one.
+  Eigen::Vector3i latest = Eigen::Vector3i::Zero();
+  bool any = false;
+  for (const VoxelCoordinate& voxel : voxels) {
+    forEachBrickWith(voxel, [&](const Eigen::Vector3i& brick, std::ptrdiff_t) {
+      if (any && brick == latest) return;
+      makeBrick(brick);
+      latest = brick;
+      any = true;
+    });
+  }
+  cells_.assign(brick_count_ * kCellsPerBrick, kNone);
+  any = false;
+  std::int32_t* cells = nullptr;
   for (std::size_t number = 0; number < voxels.size(); ++number) {
-    const VoxelCoordinate& voxel = voxels[number];
-    const Eigen::Vector3i brick(voxel.x() >> kBrickBits, voxel.y() >> kBrickBits, voxel.z() >> kBrickBits);
-    const Eigen::Vector3i local = voxel - brick * kBrickSize;
-    const BrickRange xs = bricksThatHold(local.x()), ys = bricksThatHold(local.y()), zs = bricksThatHold(local.z());
-    for (int dz = zs.first; dz <= zs.last; ++dz) {
-      for (int dy = ys.first; dy <= ys.last; ++dy) {
-        for (int dx = xs.first; dx <= xs.last; ++dx) {
-          const Eigen::Vector3i at = local - kBrickSize * Eigen::Vector3i(dx, dy, dz);
-          std::int32_t* cells = makeBrick(brick + Eigen::Vector3i(dx, dy, dz));
-          cells[neighbourOffset(at.x() + 1, at.y() + 1, at.z() + 1)] = static_cast<std::int32_t>(number);
-        }
+    forEachBrickWith(voxels[number], [&](const Eigen::Vector3i& brick, std::ptrdiff_t cell) {
+      if (!any || brick != latest) {
+        cells = cells_.data() + static_cast<std::size_t>(slots_[slotOf(brick)].number) * kCellsPerBrick;
+        latest = brick;
+        any = true;
       }
-    }
+      cells[cell] = static_cast<std::int32_t>(number);
+    });
   }
 }
 
@@ -50,22 +77,19 @@ const std::int32_t* VoxelIndex::cellsOf(const Eigen::Vector3i& brick) const {
   return number == kNone ? nullptr : cells_.data() + static_cast<std::size_t>(number) * kCellsPerBrick;
 }
 
-std::int32_t* VoxelIndex::makeBrick(const Eigen::Vector3i& brick) {
+void VoxelIndex::makeBrick(const Eigen::Vector3i& brick) {
   std::size_t slot = slotOf(brick);
-  if (slots_[slot].number == kNone) {
-    if (2 * (brick_count_ + 1) > slots_.size()) {
-      std::vector<Slot> old(2 * slots_.size());
-      old.swap(slots_);
-      for (const Slot& entry : old) {
-        if (entry.number != kNone) slots_[slotOf(entry.brick)] = entry;
-      }
-      slot = slotOf(brick);
+  if (slots_[slot].number != kNone) return;
+  if (2 * (brick_count_ + 1) > slots_.size()) {
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& entry : old) {
+      if (entry.number != kNone) slots_[slotOf(entry.brick)] = entry;
     }
-    slots_[slot] = {brick, static_cast<std::int32_t>(brick_count_)};
-    ++brick_count_;
-    cells_.resize(brick_count_ * kCellsPerBrick, kNone);
+    slot = slotOf(brick);
   }
-  return cells_.data() + static_cast<std::size_t>(slots_[slot].number) * kCellsPerBrick;
+  slots_[slot] = {brick, static_cast<std::int32_t>(brick_count_)};
+  ++brick_count_;
 }
 
 }  // namespace saw_ndt

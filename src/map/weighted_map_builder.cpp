@@ -1,11 +1,67 @@
 #include "saw_ndt/map/weighted_map_builder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <exception>
+#include <memory>
 #include <stdexcept>
 
+#include "map/voxel_runs.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/common/threads.h"
 
 namespace saw_ndt {
+namespace {
+
+// Fewer points are not worth another thread's table.
+constexpr std::size_t kLeastPointsPerThread = 20000;
+
+PointPlacement placementOf(const Eigen::Isometry3d& T_map_points, double resolution_m) {
+  PointPlacement placement;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) placement.T_map_points[row][column] = T_map_points(row, column);
+  }
+  placement.in_map_frame = T_map_points.matrix() == Eigen::Matrix4d::Identity();
+  placement.inverse_resolution = 1.0 / resolution_m;
+  return placement;
+}
+
+// Adds points `first` to `last` of a cloud to a table; returns how many of them have a voxel.
+std::uint64_t addRange(const ScanView& points, const std::uint32_t* labels, std::size_t label_stride, std::size_t first,
+                       std::size_t last, const PointPlacement& placement, VoxelSumsTable& table) {
+  const auto block = std::make_unique<PointBlock>();
+  block->stride = points.stride;
+  std::uint64_t count = 0;
+  for (std::size_t i = first; i < last; i += block->size) {
+    block->xyz = points.point(i);
+    block->size = std::min(last - i, PointBlock::kMostPoints);
+    if (labels == nullptr) {
+      std::fill_n(block->label, block->size, static_cast<std::int32_t>(StructuralLabel::NonGround));
+    } else {
+      for (std::size_t k = 0; k < block->size; ++k) {
+        block->label[k] = static_cast<std::int32_t>(labels[(i + k) * label_stride]);
+      }
+    }
+    const std::size_t run_count = findVoxelRuns(placement, *block);
+    std::size_t point = 0;
+    for (std::size_t k = 0; k < run_count; ++k) {
+      const VoxelRun& run = block->runs[k];
+      const auto run_size = static_cast<std::size_t>(run.sum_count[3]);
+      if (block->label[point] != kNoVoxel) {
+        const VoxelCoordinate voxel(block->voxel[0][point], block->voxel[1][point], block->voxel[2][point]);
+        VoxelSums& sums = table.sums(table.placeOf(voxel, static_cast<StructuralLabel>(block->label[point])));
+        sums.count += run_size;
+        for (std::size_t j = 0; j < 3; ++j) sums.sum[j] += run.sum_count[j];
+        for (std::size_t j = 0; j < 6; ++j) sums.product[j] += run.product[j];
+        count += run_size;
+      }
+      point += run_size;
+    }
+  }
+  return count;
+}
+
+}  // namespace
 
 WeightedMapBuilder::WeightedMapBuilder(double resolution_m) {
   checkOption(resolution_m > 0.0 && std::isfinite(resolution_m), "resolution_m", resolution_m, "positive");
@@ -20,10 +76,40 @@ void WeightedMapBuilder::requireKind(bool labelled) {
   }
 }
 
-void WeightedMapBuilder::startCloud(const Eigen::Isometry3d& T_map_cloud, bool labelled) {
+void WeightedMapBuilder::addPoints(const ScanView& points, const std::uint32_t* labels, std::size_t label_stride,
+                                   const Eigen::Isometry3d& T_map_cloud, int threads) {
   if (!T_map_cloud.matrix().allFinite()) throw std::invalid_argument("T_map_cloud is not finite");
-  requireKind(labelled);
+  requireKind(labels != nullptr);
   ++origin_.scan_count;
+  const PointPlacement placement = placementOf(T_map_cloud, origin_.resolution_m);
+  const std::size_t most_parts = std::max<std::size_t>(1, points.size / kLeastPointsPerThread);
+  const int part_count =
+      static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(threadCount(threads)), most_parts));
+  if (part_count == 1) {
+    origin_.point_count += addRange(points, labels, label_stride, 0, points.size, placement, table_);
+    return;
+  }
+  struct Part {
+    VoxelSumsTable table;
+    std::uint64_t point_count = 0;
+    std::exception_ptr failure;
+  };
+  std::vector<Part> parts(static_cast<std::size_t>(part_count));
+#pragma omp parallel for num_threads(part_count) schedule(static)
+  for (int p = 0; p < part_count; ++p) {
+    Part& part = parts[static_cast<std::size_t>(p)];
+    const auto start = [&](int number) { return points.size * static_cast<std::size_t>(number) / part_count; };
+    try {
+      part.point_count = addRange(points, labels, label_stride, start(p), start(p + 1), placement, part.table);
+    } catch (...) {
+      part.failure = std::current_exception();
+    }
+  }
+  for (const Part& part : parts) {
+    if (part.failure) std::rethrow_exception(part.failure);
+    table_.add(part.table);
+    origin_.point_count += part.point_count;
+  }
 }
 
 void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
@@ -36,8 +122,8 @@ void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
   origin_.point_count += other.origin_.point_count;
 }
 
-WeightedVoxelMap WeightedMapBuilder::build(const VoxelWeighting& weighting) const {
-  return {origin_, table_.entries(), weighting};
+WeightedVoxelMap WeightedMapBuilder::build(const VoxelWeighting& weighting, int threads) const {
+  return {origin_, table_.entries(), weighting, threads};
 }
 
 }  // namespace saw_ndt

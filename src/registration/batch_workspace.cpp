@@ -1,6 +1,6 @@
 #include "saw_ndt/registration/batch_workspace.h"
 
-#include "registration/voxel_runs.h"
+#include "registration/batch_voxel_finder.h"
 
 namespace saw_ndt {
 

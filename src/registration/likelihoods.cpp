@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "registration/pair_parameters.h"
-#include "registration/voxel_runs.h"
+#include "registration/batch_voxel_finder.h"
 
 namespace saw_ndt {
 namespace {
@@ -47,13 +47,13 @@ Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, co
 #pragma omp parallel num_threads(threads)
   {
     BatchScratch& scratch = *workspace.scratch_of_thread[static_cast<std::size_t>(omp_get_thread_num())];
-    VoxelRuns runs(level, NeighborhoodSearchMethod::DIRECT7, T_map_source);
+    BatchVoxelFinder finder(level, NeighborhoodSearchMethod::DIRECT7, T_map_source);
     float* const total = scratch.sums.score;
     float* const best = scratch.sums.pull[0];
 #pragma omp for schedule(dynamic)
     for (std::ptrdiff_t b = 0; b < batch_count; ++b) {
       const std::size_t first = static_cast<std::size_t>(b) * kPointsPerBatch;
-      runs.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
+      finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
       accumulateScores(scratch.points, scratch.voxels, parameters, total, best);
       workspace.batch_likelihoods[static_cast<std::size_t>(b)] = sumBatch(scratch, total, best, source.label() + first);
     }

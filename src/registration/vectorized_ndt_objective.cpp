@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "registration/pair_parameters.h"
-#include "registration/voxel_runs.h"
+#include "registration/batch_voxel_finder.h"
 
 namespace saw_ndt {
 namespace {
@@ -45,12 +45,12 @@ NdtDerivatives VectorizedNdtObjective::evaluate(OrderedSource& source, const Eig
 #pragma omp parallel num_threads(threads)
   {
     BatchScratch& scratch = *workspace.scratch_of_thread[static_cast<std::size_t>(omp_get_thread_num())];
-    VoxelRuns runs(level_, method_, T_map_source);
+    BatchVoxelFinder finder(level_, method_, T_map_source);
 #pragma omp for schedule(dynamic)
     for (std::ptrdiff_t b = 0; b < batch_count; ++b) {
       const std::size_t first = static_cast<std::size_t>(b) * kPointsPerBatch;
       const std::size_t count = std::min(kPointsPerBatch, source.size() - first);
-      runs.find(source, first, count, scratch);
+      finder.find(source, first, count, scratch);
       BatchTotals sums{};
       sums.pair_count =
           accumulatePairs(scratch.points, source.confidence() + first, scratch.voxels, parameters, scratch.sums);

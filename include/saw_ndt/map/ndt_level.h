@@ -36,8 +36,9 @@ class NdtLevel {
   /// Groups labelled sums into voxels of `factor` times their size and makes the distribution of each. Sums whose label
   /// has confidence 0 take no part. `entries` hold the entries of a voxel one after the other.
   /// @param resolution_m  edge of the voxels of `entries`
+  /// @param threads       0: all cores; the level does not depend on it
   static NdtLevel fromSums(const std::vector<LabelledVoxelSums>& entries, double resolution_m, int factor,
-                           const VoxelWeighting& weighting);
+                           const VoxelWeighting& weighting, int threads = 1);
 
   /// Edge of a voxel (m).
   double resolution() const { return resolution_m_; }

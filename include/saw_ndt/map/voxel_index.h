@@ -57,7 +57,7 @@ class VoxelIndex {
 
   const std::int32_t* cellsOf(const Eigen::Vector3i& brick) const;
   std::size_t slotOf(const Eigen::Vector3i& brick) const;
-  std::int32_t* makeBrick(const Eigen::Vector3i& brick);
+  void makeBrick(const Eigen::Vector3i& brick);
 
   std::vector<Slot> slots_;
   std::vector<std::int32_t> cells_;

@@ -15,26 +15,32 @@ inline std::uint64_t hashCoordinate(const Eigen::Vector3i& c) {
   return h ^ (h >> 32);
 }
 
-/// Sums by voxel and label: a hash table of 4-byte slots that point into a flat array of entries.
+/// Sums by voxel and label: a hash table of 8-byte slots that point into a flat array of entries. A slot holds the hash
+/// too, so that looking for one entry rarely touches another.
 class VoxelSumsTable {
  public:
-  VoxelSumsTable() : slots_(kLeastSlots, kEmpty) {}
+  VoxelSumsTable() : slots_(kLeastSlots) {}
 
-  /// The sums of `label` in `voxel`, made empty where there are none yet. Valid until the next call.
-  VoxelSums& at(const VoxelCoordinate& voxel, StructuralLabel label) {
-    std::size_t slot = find(voxel, label);
-    if (slots_[slot] == kEmpty) {
-      if (2 * (entries_.size() + 1) > slots_.size()) {
-        grow();
-        slot = find(voxel, label);
-      }
-      slots_[slot] = static_cast<std::uint32_t>(entries_.size());
-      entries_.push_back({voxel, label, {}});
+  /// The place in entries() of `label` in `voxel`, made empty where there is none yet.
+  std::size_t placeOf(const VoxelCoordinate& voxel, StructuralLabel label) {
+    const std::uint32_t hash = hashOf(voxel, label);
+    std::size_t slot = hash & mask();
+    for (; slots_[slot].place != kEmpty; slot = (slot + 1) & mask()) {
+      if (slots_[slot].hash != hash) continue;
+      const LabelledVoxelSums& entry = entries_[slots_[slot].place];
+      if (entry.voxel == voxel && entry.label == label) return slots_[slot].place;
     }
-    return entries_[slots_[slot]].sums;
+    const std::size_t place = entries_.size();
+    slots_[slot] = {hash, static_cast<std::uint32_t>(place)};
+    entries_.push_back({voxel, label, {}});
+    if (2 * (place + 1) > slots_.size()) grow();
+    return place;
   }
 
-  void add(const LabelledVoxelSums& entry) { at(entry.voxel, entry.label) += entry.sums; }
+  /// The sums at a place in entries().
+  VoxelSums& sums(std::size_t place) { return entries_[place].sums; }
+
+  void add(const LabelledVoxelSums& entry) { sums(placeOf(entry.voxel, entry.label)) += entry.sums; }
   void add(const VoxelSumsTable& other) {
     for (const LabelledVoxelSums& entry : other.entries_) add(entry);
   }
@@ -46,25 +52,28 @@ class VoxelSumsTable {
   static constexpr std::size_t kLeastSlots = 1024;  // a power of two
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 
-  std::size_t find(const VoxelCoordinate& voxel, StructuralLabel label) const {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = (hashCoordinate(voxel) + static_cast<std::uint32_t>(label) * 0x9E3779B9u) & mask;
-    while (slots_[slot] != kEmpty) {
-      const LabelledVoxelSums& entry = entries_[slots_[slot]];
-      if (entry.voxel == voxel && entry.label == label) break;
-      slot = (slot + 1) & mask;
-    }
-    return slot;
+  struct Slot {
+    std::uint32_t hash = 0;
+    std::uint32_t place = kEmpty;
+  };
+
+  static std::uint32_t hashOf(const VoxelCoordinate& voxel, StructuralLabel label) {
+    return static_cast<std::uint32_t>(hashCoordinate(voxel)) + static_cast<std::uint32_t>(label) * 0x9E3779B9u;
   }
+  std::size_t mask() const { return slots_.size() - 1; }
 
   void grow() {
-    slots_.assign(2 * slots_.size(), kEmpty);
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-      slots_[find(entries_[i].voxel, entries_[i].label)] = static_cast<std::uint32_t>(i);
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& moved : old) {
+      if (moved.place == kEmpty) continue;
+      std::size_t slot = moved.hash & mask();
+      while (slots_[slot].place != kEmpty) slot = (slot + 1) & mask();
+      slots_[slot] = moved;
     }
   }
 
-  std::vector<std::uint32_t> slots_;
+  std::vector<Slot> slots_;
   std::vector<LabelledVoxelSums> entries_;
 };
 

@@ -23,10 +23,11 @@ struct MapOrigin {
 class WeightedVoxelMap {
  public:
   WeightedVoxelMap() = default;
-  /// @param entries    each voxel and label at most once, in any order
+  /// @param entries  each voxel and label at most once, in any order
+  /// @param threads  0: all cores; the map does not depend on it
   /// @throws std::invalid_argument for options that do not hold, or an entry given twice
   WeightedVoxelMap(const MapOrigin& origin, std::vector<LabelledVoxelSums> entries,
-                   const VoxelWeighting& weighting = {});
+                   const VoxelWeighting& weighting = {}, int threads = 1);
 
   const MapOrigin& origin() const { return origin_; }
   /// Edge of a fine voxel (m).
@@ -46,12 +47,14 @@ class WeightedVoxelMap {
   const std::vector<LabelledVoxelSums>& entries() const { return entries_; }
 
   /// The same points read with other confidences and weights.
-  WeightedVoxelMap reweighted(const VoxelWeighting& weighting) const { return {origin_, entries_, weighting}; }
+  WeightedVoxelMap reweighted(const VoxelWeighting& weighting, int threads = 1) const {
+    return {origin_, entries_, weighting, threads};
+  }
 
   /// Writes the map file (see map_file.h). @throws Error
   void save(const std::string& path) const;
   /// Reads a map file. @throws Error where it is missing, damaged, truncated or foreign
-  static WeightedVoxelMap load(const std::string& path, const VoxelWeighting& weighting = {});
+  static WeightedVoxelMap load(const std::string& path, const VoxelWeighting& weighting = {}, int threads = 1);
 
  private:
   MapOrigin origin_;

@@ -1,24 +1,19 @@
 #pragma once
 
+#include "saw_ndt/segmentation/cloud_view.h"
+
 namespace saw_ndt {
 
 template <typename PointT>
-void WeightedMapBuilder::addCloud(const pcl::PointCloud<PointT>& cloud, const Eigen::Isometry3d& T_map_cloud) {
-  constexpr bool kLabelled = pcl::traits::has_label<PointT>::value;
-  if constexpr (kLabelled) {
+void WeightedMapBuilder::addCloud(const pcl::PointCloud<PointT>& cloud, const Eigen::Isometry3d& T_map_cloud,
+                                  int threads) {
+  const std::uint32_t* labels = nullptr;
+  if constexpr (pcl::traits::has_label<PointT>::value) {
     for (const PointT& point : cloud) structuralLabelFromValue(point.label);
+    static const std::uint32_t no_label = 0;
+    labels = cloud.empty() ? &no_label : &cloud.front().label;
   }
-  startCloud(T_map_cloud, kLabelled);
-  const double inverse_resolution = 1.0 / origin_.resolution_m;
-  QuantizedPosition position;
-  for (const PointT& point : cloud) {
-    const Eigen::Vector3d p_map = T_map_cloud * Eigen::Vector3d(point.x, point.y, point.z);
-    if (!quantize(p_map, inverse_resolution, position)) continue;
-    StructuralLabel label = StructuralLabel::NonGround;
-    if constexpr (kLabelled) label = static_cast<StructuralLabel>(point.label);
-    table_.at(position.voxel, label).add(position.steps);
-    ++origin_.point_count;
-  }
+  addPoints(viewOf(cloud), labels, sizeof(PointT) / sizeof(std::uint32_t), T_map_cloud, threads);
 }
 
 }  // namespace saw_ndt

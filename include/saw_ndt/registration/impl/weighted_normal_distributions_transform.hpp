@@ -60,8 +60,8 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::buildTarget(
     const PointCloudTarget& cloud) {
   WeightedMapBuilder builder(resolution_);
-  builder.addCloud(cloud, Eigen::Isometry3d::Identity());
-  map_ = std::make_shared<const WeightedVoxelMap>(builder.build(weighting_));
+  builder.addCloud(cloud, Eigen::Isometry3d::Identity(), options_.threads);
+  map_ = std::make_shared<const WeightedVoxelMap>(builder.build(weighting_, options_.threads));
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -88,7 +88,9 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::set
     const VoxelWeighting& weighting) {
   weighting.check();
   weighting_ = weighting;
-  if (map_ && !target_is_map_) map_ = std::make_shared<const WeightedVoxelMap>(map_->reweighted(weighting));
+  if (map_ && !target_is_map_) {
+    map_ = std::make_shared<const WeightedVoxelMap>(map_->reweighted(weighting, options_.threads));
+  }
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

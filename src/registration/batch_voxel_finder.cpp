@@ -1,4 +1,4 @@
-#include "registration/voxel_runs.h"
+#include "registration/batch_voxel_finder.h"
 
 namespace saw_ndt {
 namespace {
@@ -22,7 +22,7 @@ AnchoredPose::AnchoredPose(const Eigen::Isometry3d& T_map_source, double resolut
   pose.inverse_resolution = static_cast<float>(1.0 / resolution_m);
 }
 
-VoxelRuns::VoxelRuns(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source)
+BatchVoxelFinder::BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source)
     : level_(level) {
   const auto take = [this, &level](const auto& all) {
     const auto resolution_m = static_cast<float>(level.resolution());
@@ -48,7 +48,7 @@ VoxelRuns::VoxelRuns(const NdtLevel& level, NeighborhoodSearchMethod method, con
   pose_ = anchored.pose;
 }
 
-void VoxelRuns::find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) {
+void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) {
   BatchPoints& points = scratch.points;
   const auto transform = [&] {
     transformBatch(source.x() + first, source.y() + first, source.z() + first, count, pose_, points);

@@ -24,10 +24,10 @@ struct LikelihoodSums {
 };
 
 /// Moves batches of source points to a map level and finds the voxels that each run of points pairs with. One a thread.
-class VoxelRuns {
+class BatchVoxelFinder {
  public:
   /// @param level  is referred to, not copied
-  VoxelRuns(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source);
+  BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source);
 
   /// Fills points and voxels of the scratch memory from `count` points of the source, at most kPointsPerBatch.
   /// Puts them in a better order first where runs are short.

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "saw_ndt/map/voxel_sums.h"
+
+namespace saw_ndt {
+
+/// Sorts entries as inMapOrder() says.
+void sortIntoMapOrder(std::vector<LabelledVoxelSums>& entries);
+
+}  // namespace saw_ndt
