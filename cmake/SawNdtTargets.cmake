@@ -9,8 +9,9 @@ endfunction()
 # For targets whose files include common/vector_dispatch.h.
 function(saw_ndt_use_vector_dispatch target)
   target_link_libraries(${target} PRIVATE hwy::hwy)
-  # Four sets of instructions are enough: what every x86-64 has, SSE4, AVX2, AVX-512.
-  target_compile_definitions(${target} PRIVATE HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_AVX3_DL\))
+  # Four sets of instructions are enough: what every x86-64 has, SSE4, AVX2, AVX-512. Elsewhere vectors must have a size
+  # that is known when they are compiled, which SVE's have not.
+  target_compile_definitions(${target} PRIVATE HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128\))
   target_include_directories(${target} PRIVATE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
 endfunction()
 

@@ -1,5 +1,7 @@
 #include "registration/batch_voxel_finder.h"
 
+#include <algorithm>
+
 namespace saw_ndt {
 namespace {
 
@@ -22,7 +24,8 @@ AnchoredPose::AnchoredPose(const Eigen::Isometry3d& T_map_source, double resolut
   pose.inverse_resolution = static_cast<float>(1.0 / resolution_m);
 }
 
-BatchVoxelFinder::BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source)
+BatchVoxelFinder::BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMethod method,
+                                   const Eigen::Isometry3d& T_map_source)
     : level_(level) {
   const auto take = [this, &level](const auto& all) {
     const auto resolution_m = static_cast<float>(level.resolution());
@@ -58,6 +61,12 @@ void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_
     source.regroup(first, points);
     transform();
   }
+  findVoxels(scratch);
+  cutIntoUnits(scratch);
+}
+
+void BatchVoxelFinder::findVoxels(BatchScratch& scratch) {
+  const BatchPoints& points = scratch.points;
   const PackedNdtCell* const cells = level_.packedCells().data();
   RunVoxel* voxel = scratch.voxels.voxels;
   for (std::size_t run = 0; run < points.run_count; ++run) {
@@ -80,6 +89,43 @@ void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_
     }
   }
   scratch.voxels.first[points.run_count] = static_cast<std::uint32_t>(voxel - scratch.voxels.voxels);
+}
+
+// Units of runs that pair with equally many voxels stand together, each such class filled up to whole vectors.
+void BatchVoxelFinder::cutIntoUnits(BatchScratch& scratch) const {
+  const BatchPoints& points = scratch.points;
+  const std::uint32_t* const first_voxel = scratch.voxels.first;
+  const std::size_t unit_size = points_per_unit_;
+  std::array<std::size_t, kMostNeighbours + 1> places{};
+  for (std::size_t run = 0; run < points.run_count; ++run) {
+    const auto length = static_cast<std::size_t>(points.run_starts[run + 1] - points.run_starts[run]);
+    places[first_voxel[run + 1] - first_voxel[run]] += (length + unit_size - 1) / unit_size;
+  }
+  places[0] = 0;
+  std::size_t begin = 0;
+  for (std::size_t& place : places) {
+    const std::size_t count = (place + units_per_vector_ - 1) / units_per_vector_ * units_per_vector_;
+    place = begin;
+    begin += count;
+  }
+  BatchUnits& units = scratch.units;
+  units.count = begin;
+  for (std::size_t run = 0; run < points.run_count; ++run) {
+    const auto voxel_count = static_cast<std::uint8_t>(first_voxel[run + 1] - first_voxel[run]);
+    if (voxel_count == 0) continue;
+    const auto end = static_cast<std::size_t>(points.run_starts[run + 1]);
+    std::size_t& place = places[voxel_count];
+    for (auto i = static_cast<std::size_t>(points.run_starts[run]); i < end; i += unit_size) {
+      units.units[place++] = {static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(std::min(unit_size, end - i)),
+                              voxel_count, first_voxel[run]};
+    }
+  }
+  for (const std::size_t place : places) {
+    for (std::size_t fill = place; fill % units_per_vector_ != 0; ++fill) {
+      units.units[fill] = units.units[fill - 1];
+      units.units[fill].point_count = 0;
+    }
+  }
 }
 
 }  // namespace saw_ndt

@@ -14,13 +14,13 @@ namespace saw_ndt {
 struct BatchScratch {
   BatchPoints points{};
   BatchVoxels voxels{};
-  BatchSums sums{};
+  BatchUnits units{};
 };
 
 /// Sums over a batch of points towards Likelihoods.
 struct LikelihoodSums {
-  double all = 0.0, non_ground = 0.0, best = 0.0;
-  std::size_t non_ground_points = 0, matched_points = 0;
+  BatchScores scores{};
+  std::size_t matched_points = 0;
 };
 
 /// Moves batches of source points to a map level and finds the voxels that each run of points pairs with. One a thread.
@@ -29,7 +29,7 @@ class BatchVoxelFinder {
   /// @param level  is referred to, not copied
   BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source);
 
-  /// Fills points and voxels of the scratch memory from `count` points of the source, at most kPointsPerBatch.
+  /// Fills the scratch memory from `count` points of the source, at most kPointsPerBatch.
   /// Puts them in a better order first where runs are short.
   void find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch);
 
@@ -40,7 +40,12 @@ class BatchVoxelFinder {
     float x_m, y_m, z_m;
   };
 
+  void findVoxels(BatchScratch& scratch);
+  void cutIntoUnits(BatchScratch& scratch) const;
+
   const NdtLevel& level_;
+  std::size_t points_per_unit_ = pointsPerUnit();
+  std::size_t units_per_vector_ = unitsPerVector();
   std::array<Shift, kMostNeighbours> shifts_{};
   std::size_t neighbour_count_ = 0;
   VoxelCoordinate origin_;

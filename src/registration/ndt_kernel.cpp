@@ -1,5 +1,7 @@
 #include "registration/ndt_kernel.h"
 
+#include <cstddef>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "registration/ndt_kernel.cpp"
 #include "common/vector_dispatch.h"
@@ -108,126 +110,197 @@ void columnsOf(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, std::si
   for (std::size_t k = 0; i + k < count; ++k) columns[i + k] = rest_columns[k];
 }
 
-// q and the binary logarithm of exp(-d2/2 q^T C^-1 q) for a vector of points and one voxel.
-struct Offset {
-  Vector x, y, z;    // C^-1 q
-  Vector q_squared;  // |q|^2; computed only where asked for
-  Vector exponent;
+#if HWY_TARGET == HWY_SCALAR
+constexpr std::size_t kPointsPerUnit = 1;
+#else
+constexpr std::size_t kPointsPerUnit = 4;
+#endif
+constexpr std::size_t kUnitsPerVector = hn::MaxLanes(Float()) / kPointsPerUnit;
+
+std::size_t unitSize() { return kPointsPerUnit; }
+std::size_t unitsInVector() { return kUnitsPerVector; }
+
+// Four values for each unit of a vector, and one of them in all lanes of its unit.
+#if HWY_TARGET == HWY_SCALAR
+using Quads = const float*;
+template <typename Address>
+HWY_INLINE Quads loadQuads(Float /*d*/, const Address& address) {
+  return address(0);
+}
+template <int kValue>
+HWY_INLINE Vector valueOf(Float d, Quads quads) {
+  return hn::Set(d, quads[kValue]);
+}
+template <typename Address>
+HWY_INLINE Vector loadUnits(Float d, const Address& address) {
+  return hn::LoadU(d, address(0));
+}
+#else
+using Quads = Vector;
+template <typename Address>
+HWY_INLINE Vector loadUnits(Float d, const Address& address) {
+  const hn::Full128<float> d128;
+  if constexpr (kUnitsPerVector == 1) {
+    return hn::LoadU(d, address(0));
+  } else if constexpr (kUnitsPerVector == 2) {
+    return hn::Combine(d, hn::LoadU(d128, address(1)), hn::LoadU(d128, address(0)));
+  } else {
+    const hn::Half<Float> d256;
+    return hn::Combine(d, hn::Combine(d256, hn::LoadU(d128, address(3)), hn::LoadU(d128, address(2))),
+                       hn::Combine(d256, hn::LoadU(d128, address(1)), hn::LoadU(d128, address(0))));
+  }
+}
+template <typename Address>
+HWY_INLINE Quads loadQuads(Float d, const Address& address) {
+  return loadUnits(d, address);
+}
+template <int kValue>
+HWY_INLINE Vector valueOf(Float /*d*/, Quads quads) {
+  return hn::Broadcast<kValue>(quads);
+}
+#endif
+
+// 1 in the lanes that hold a point of a unit of so many points.
+alignas(16) constexpr float kUsedLanes[5][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {1, 1, 1, 0}, {1, 1, 1, 1}};
+
+HWY_INLINE Vector usedLanes(Float d, const PointUnit* units) {
+  return loadUnits(d, [&](std::size_t k) HWY_ATTR { return kUsedLanes[units[k].point_count]; });
+}
+
+HWY_INLINE Vector valuesOf(Float d, const float* values, const PointUnit* units) {
+  return loadUnits(d, [&](std::size_t k) HWY_ATTR { return values + units[k].first_point; });
+}
+
+// A voxel of each unit of a vector, broadcast.
+struct UnitVoxels {
+  Vector mean[3];
+  Vector c[6];
+  Vector weight, confidence;
 };
 
-template <bool within_radius>
-HWY_INLINE Offset offsetFrom(Float d, const RunVoxel& voxel, const PackedNdtCell& cell, Vector px, Vector py, Vector pz,
-                             Vector factor, Vector unused_lanes) {
-  const float* const c = cell.inverse_covariance;
-  const Vector qx = hn::Sub(px, hn::Set(d, voxel.mean[0]));
-  const Vector qy = hn::Sub(py, hn::Set(d, voxel.mean[1]));
-  const Vector qz = hn::Sub(pz, hn::Set(d, voxel.mean[2]));
+static_assert(offsetof(PackedNdtCell, mean_confidence) == 10 * sizeof(float));
+
+HWY_INLINE UnitVoxels loadVoxels(Float d, const PointUnit* units, std::size_t n, const RunVoxel* voxels,
+                                 const PackedNdtCell* cells) {
+  const auto voxel = [&](std::size_t k) HWY_ATTR { return voxels + units[k].first_voxel + n; };
+  const auto cell = [&](std::size_t k) HWY_ATTR { return reinterpret_cast<const float*>(cells + voxel(k)->number); };
+  const Quads mean = loadQuads(d, [&](std::size_t k) HWY_ATTR { return voxel(k)->mean; });
+  const Quads first = loadQuads(d, [&](std::size_t k) HWY_ATTR { return cell(k) + 3; });
+  const Quads second = loadQuads(d, [&](std::size_t k) HWY_ATTR { return cell(k) + 7; });
+  return {{valueOf<0>(d, mean), valueOf<1>(d, mean), valueOf<2>(d, mean)},
+          {valueOf<0>(d, first), valueOf<1>(d, first), valueOf<2>(d, first), valueOf<3>(d, first),
+           valueOf<0>(d, second), valueOf<1>(d, second)},
+          valueOf<2>(d, second),
+          valueOf<3>(d, second)};
+}
+
+// q, C^-1 q and the squared Mahalanobis distance of each point of a vector.
+struct Offset {
+  Vector qx, qy, qz;
+  Vector x, y, z;
+  Vector squared_mahalanobis;
+};
+
+HWY_INLINE Offset offsetFrom(const UnitVoxels& v, Vector px, Vector py, Vector pz) {
   Offset u;
-  u.x = hn::MulAdd(hn::Set(d, c[0]), qx, hn::MulAdd(hn::Set(d, c[1]), qy, hn::Mul(hn::Set(d, c[2]), qz)));
-  u.y = hn::MulAdd(hn::Set(d, c[1]), qx, hn::MulAdd(hn::Set(d, c[3]), qy, hn::Mul(hn::Set(d, c[4]), qz)));
-  u.z = hn::MulAdd(hn::Set(d, c[2]), qx, hn::MulAdd(hn::Set(d, c[4]), qy, hn::Mul(hn::Set(d, c[5]), qz)));
-  const Vector m = hn::MulAdd(qx, u.x, hn::MulAdd(qy, u.y, hn::Mul(qz, u.z)));
-  u.exponent = hn::MulAdd(m, factor, unused_lanes);
-  u.q_squared = within_radius ? hn::MulAdd(qx, qx, hn::MulAdd(qy, qy, hn::Mul(qz, qz))) : m;
+  u.qx = hn::Sub(px, v.mean[0]);
+  u.qy = hn::Sub(py, v.mean[1]);
+  u.qz = hn::Sub(pz, v.mean[2]);
+  u.x = hn::MulAdd(v.c[0], u.qx, hn::MulAdd(v.c[1], u.qy, hn::Mul(v.c[2], u.qz)));
+  u.y = hn::MulAdd(v.c[1], u.qx, hn::MulAdd(v.c[3], u.qy, hn::Mul(v.c[4], u.qz)));
+  u.z = hn::MulAdd(v.c[2], u.qx, hn::MulAdd(v.c[4], u.qy, hn::Mul(v.c[5], u.qz)));
+  u.squared_mahalanobis = hn::MulAdd(u.qx, u.x, hn::MulAdd(u.qy, u.y, hn::Mul(u.qz, u.z)));
   return u;
 }
 
-// 0 where a vector that begins at `i` holds points before `last`, and so little beyond that 2^x vanishes.
-HWY_INLINE Vector unusedLanes(Float d, std::size_t i, std::size_t last) {
-  return hn::IfThenElse(hn::FirstN(d, last - i), hn::Zero(d), hn::Set(d, -1.0e30F));
-}
+// Sums over the pairs of each point of some vectors of units, which stay in the first-level cache.
+constexpr std::size_t kLanesPerPass = 512;
+constexpr std::size_t kUnitsPerPass = kLanesPerPass / kPointsPerUnit;
+struct alignas(64) PointSums {
+  float score[kLanesPerPass];
+  float pull[3][kLanesPerPass];
+  float curvature[6][kLanesPerPass];
+  float radial[6][kLanesPerPass];
+};
 
 template <bool weighted, bool within_radius>
-std::size_t accumulatePairsOf(const BatchPoints& points, const float* confidence, const BatchVoxels& voxels,
-                              const PairParameters& parameters, BatchSums& sums) {
+std::size_t sumPairs(const BatchPoints& points, const float* confidence, const PointUnit* units, std::size_t unit_count,
+                     const RunVoxel* voxels, const PairParameters& parameters, PointSums& sums) {
   const Float d;
-  const std::size_t lanes = hn::Lanes(d);
   const Vector factor = hn::Set(d, parameters.exponent_factor);
   const Vector one = hn::Set(d, 1.0F);
   const Vector least_compatibility = hn::Set(d, parameters.least_compatibility);
   const Vector mismatch_slope = hn::Set(d, parameters.mismatch_slope);
   const Vector radius_squared = hn::Set(d, parameters.radius_m * parameters.radius_m);
   std::size_t pair_count = 0;
-  for (std::size_t run = 0; run < points.run_count; ++run) {
-    const RunVoxel* const begin = voxels.voxels + voxels.first[run];
-    const RunVoxel* const end = voxels.voxels + voxels.first[run + 1];
-    const auto last = static_cast<std::size_t>(points.run_starts[run + 1]);
-    for (auto i = static_cast<std::size_t>(points.run_starts[run]); i < last; i += lanes) {
-      const Vector px = hn::LoadU(d, points.from_centre[0] + i);
-      const Vector py = hn::LoadU(d, points.from_centre[1] + i);
-      const Vector pz = hn::LoadU(d, points.from_centre[2] + i);
-      const Vector unused_lanes = unusedLanes(d, i, last);
-      const Vector source_confidence = weighted ? hn::LoadU(d, confidence + i) : one;
-      const Vector amplitude = hn::Mul(source_confidence, hn::Set(d, parameters.amplitude));
-      Vector score = hn::Zero(d), gx = score, gy = score, gz = score;
-      Vector cxx = score, cxy = score, cxz = score, cyy = score, cyz = score, czz = score;
-      Vector rxx = score, rxy = score, rxz = score, ryy = score, ryz = score, rzz = score;
-      for (const RunVoxel* voxel = begin; voxel != end; ++voxel) {
-        const PackedNdtCell& cell = parameters.cells[voxel->number];
-        const Offset u = offsetFrom<within_radius>(d, *voxel, cell, px, py, pz, factor, unused_lanes);
-        if (within_radius) {
-          const auto within = hn::And(hn::Le(u.q_squared, radius_squared), hn::FirstN(d, last - i));
-          pair_count += hn::CountTrue(d, within);
-        }
-        Vector e = hn::Mul(amplitude, exp2OfNegative(d, u.exponent));
-        if (within_radius) e = hn::IfThenElseZero(hn::Le(u.q_squared, radius_squared), e);
-        if (weighted) {
-          const Vector difference = hn::Abs(hn::Sub(source_confidence, hn::Set(d, cell.mean_confidence)));
-          const Vector compatibility = hn::Max(least_compatibility, hn::NegMulAdd(difference, mismatch_slope, one));
-          e = hn::Mul(e, hn::Mul(compatibility, hn::Set(d, cell.weight)));
-        }
-        score = hn::Add(score, e);
-        const Vector kx = hn::Mul(e, u.x), ky = hn::Mul(e, u.y), kz = hn::Mul(e, u.z);
-        gx = hn::Add(gx, kx);
-        gy = hn::Add(gy, ky);
-        gz = hn::Add(gz, kz);
-        const float* const c = cell.inverse_covariance;
-        cxx = hn::MulAdd(e, hn::Set(d, c[0]), cxx);
-        cxy = hn::MulAdd(e, hn::Set(d, c[1]), cxy);
-        cxz = hn::MulAdd(e, hn::Set(d, c[2]), cxz);
-        cyy = hn::MulAdd(e, hn::Set(d, c[3]), cyy);
-        cyz = hn::MulAdd(e, hn::Set(d, c[4]), cyz);
-        czz = hn::MulAdd(e, hn::Set(d, c[5]), czz);
-        rxx = hn::MulAdd(kx, u.x, rxx);
-        rxy = hn::MulAdd(kx, u.y, rxy);
-        rxz = hn::MulAdd(kx, u.z, rxz);
-        ryy = hn::MulAdd(ky, u.y, ryy);
-        ryz = hn::MulAdd(ky, u.z, ryz);
-        rzz = hn::MulAdd(kz, u.z, rzz);
+  for (std::size_t u0 = 0; u0 < unit_count; u0 += kUnitsPerVector) {
+    const PointUnit* const unit = units + u0;
+    const Vector px = valuesOf(d, points.from_centre[0], unit);
+    const Vector py = valuesOf(d, points.from_centre[1], unit);
+    const Vector pz = valuesOf(d, points.from_centre[2], unit);
+    const Vector used = usedLanes(d, unit);
+    const Vector source_confidence = weighted ? valuesOf(d, confidence, unit) : one;
+    Vector amplitude = hn::Mul(used, hn::Set(d, parameters.amplitude));
+    if (weighted) amplitude = hn::Mul(amplitude, source_confidence);
+    Vector score = hn::Zero(d), gx = score, gy = score, gz = score;
+    Vector cxx = score, cxy = score, cxz = score, cyy = score, cyz = score, czz = score;
+    Vector rxx = score, rxy = score, rxz = score, ryy = score, ryz = score, rzz = score;
+    const std::size_t voxel_count = unit->voxel_count;
+    for (std::size_t n = 0; n < voxel_count; ++n) {
+      const UnitVoxels v = loadVoxels(d, unit, n, voxels, parameters.cells);
+      const Offset u = offsetFrom(v, px, py, pz);
+      Vector e = hn::Mul(amplitude, exp2OfNegative(d, hn::Mul(u.squared_mahalanobis, factor)));
+      if (within_radius) {
+        const Vector q_squared = hn::MulAdd(u.qx, u.qx, hn::MulAdd(u.qy, u.qy, hn::Mul(u.qz, u.qz)));
+        const auto within = hn::Le(q_squared, radius_squared);
+        pair_count += hn::CountTrue(d, hn::And(within, hn::Gt(used, hn::Zero(d))));
+        e = hn::IfThenElseZero(within, e);
       }
-      // Lanes beyond the run are written over by the next one, or zeroed before they are read.
-      hn::StoreU(score, d, sums.score + i);
-      hn::StoreU(gx, d, sums.pull[0] + i);
-      hn::StoreU(gy, d, sums.pull[1] + i);
-      hn::StoreU(gz, d, sums.pull[2] + i);
-      hn::StoreU(cxx, d, sums.curvature[0] + i);
-      hn::StoreU(cxy, d, sums.curvature[1] + i);
-      hn::StoreU(cxz, d, sums.curvature[2] + i);
-      hn::StoreU(cyy, d, sums.curvature[3] + i);
-      hn::StoreU(cyz, d, sums.curvature[4] + i);
-      hn::StoreU(czz, d, sums.curvature[5] + i);
-      hn::StoreU(rxx, d, sums.radial[0] + i);
-      hn::StoreU(rxy, d, sums.radial[1] + i);
-      hn::StoreU(rxz, d, sums.radial[2] + i);
-      hn::StoreU(ryy, d, sums.radial[3] + i);
-      hn::StoreU(ryz, d, sums.radial[4] + i);
-      hn::StoreU(rzz, d, sums.radial[5] + i);
+      if (weighted) {
+        const Vector difference = hn::Abs(hn::Sub(source_confidence, v.confidence));
+        const Vector compatibility = hn::Max(least_compatibility, hn::NegMulAdd(difference, mismatch_slope, one));
+        e = hn::Mul(e, hn::Mul(compatibility, v.weight));
+      }
+      score = hn::Add(score, e);
+      const Vector kx = hn::Mul(e, u.x), ky = hn::Mul(e, u.y), kz = hn::Mul(e, u.z);
+      gx = hn::Add(gx, kx);
+      gy = hn::Add(gy, ky);
+      gz = hn::Add(gz, kz);
+      cxx = hn::MulAdd(e, v.c[0], cxx);
+      cxy = hn::MulAdd(e, v.c[1], cxy);
+      cxz = hn::MulAdd(e, v.c[2], cxz);
+      cyy = hn::MulAdd(e, v.c[3], cyy);
+      cyz = hn::MulAdd(e, v.c[4], cyz);
+      czz = hn::MulAdd(e, v.c[5], czz);
+      rxx = hn::MulAdd(kx, u.x, rxx);
+      rxy = hn::MulAdd(kx, u.y, rxy);
+      rxz = hn::MulAdd(kx, u.z, rxz);
+      ryy = hn::MulAdd(ky, u.y, ryy);
+      ryz = hn::MulAdd(ky, u.z, ryz);
+      rzz = hn::MulAdd(kz, u.z, rzz);
     }
+    const std::size_t i = u0 * kPointsPerUnit;
+    hn::Store(score, d, sums.score + i);
+    hn::Store(gx, d, sums.pull[0] + i);
+    hn::Store(gy, d, sums.pull[1] + i);
+    hn::Store(gz, d, sums.pull[2] + i);
+    hn::Store(cxx, d, sums.curvature[0] + i);
+    hn::Store(cxy, d, sums.curvature[1] + i);
+    hn::Store(cxz, d, sums.curvature[2] + i);
+    hn::Store(cyy, d, sums.curvature[3] + i);
+    hn::Store(cyz, d, sums.curvature[4] + i);
+    hn::Store(czz, d, sums.curvature[5] + i);
+    hn::Store(rxx, d, sums.radial[0] + i);
+    hn::Store(rxy, d, sums.radial[1] + i);
+    hn::Store(rxz, d, sums.radial[2] + i);
+    hn::Store(ryy, d, sums.radial[3] + i);
+    hn::Store(ryz, d, sums.radial[4] + i);
+    hn::Store(rzz, d, sums.radial[5] + i);
     if (!within_radius) {
-      pair_count += static_cast<std::size_t>(end - begin) * (last - static_cast<std::size_t>(points.run_starts[run]));
+      for (std::size_t k = 0; k < kUnitsPerVector; ++k) pair_count += unit[k].point_count * voxel_count;
     }
   }
   return pair_count;
-}
-
-std::size_t pairs(const BatchPoints& points, const float* confidence, const BatchVoxels& voxels,
-                  const PairParameters& parameters, BatchSums& sums) {
-  if (parameters.within_radius) {
-    return parameters.weighted ? accumulatePairsOf<true, true>(points, confidence, voxels, parameters, sums)
-                               : accumulatePairsOf<false, true>(points, confidence, voxels, parameters, sums);
-  }
-  return parameters.weighted ? accumulatePairsOf<true, false>(points, confidence, voxels, parameters, sums)
-                             : accumulatePairsOf<false, false>(points, confidence, voxels, parameters, sums);
 }
 
 HWY_INLINE void addSum(Float d, Vector v, double& sum) {
@@ -235,15 +308,16 @@ HWY_INLINE void addSum(Float d, Vector v, double& sum) {
 }
 
 // sum of J^T M J, its upper triangle row by row.
-void projectMatrix(const BatchPoints& points, std::size_t count, const float m[6][kBatchRoom], double* sum) {
+void projectMatrix(const BatchPoints& points, const PointUnit* units, std::size_t unit_count,
+                   const float m[6][kLanesPerPass], double* sum) {
   const Float d;
-  const std::size_t lanes = hn::Lanes(d);
   Vector xx = hn::Zero(d), xy = xx, xz = xx, yy = xx, yz = xx, zz = xx;
   Vector xa = xx, xb = xx, xc = xx, ya = xx, yb = xx, yc = xx, za = xx, zb = xx, zc = xx;
   Vector aa = xx, ab = xx, ac = xx, bb = xx, bc = xx, cc = xx;
-  for (std::size_t i = 0; i < count; i += lanes) {
-    const Vector x = hn::Load(d, points.rotated[0] + i), y = hn::Load(d, points.rotated[1] + i),
-                 z = hn::Load(d, points.rotated[2] + i);
+  for (std::size_t u0 = 0; u0 < unit_count; u0 += kUnitsPerVector) {
+    const std::size_t i = u0 * kPointsPerUnit;
+    const Vector x = valuesOf(d, points.rotated[0], units + u0), y = valuesOf(d, points.rotated[1], units + u0),
+                 z = valuesOf(d, points.rotated[2], units + u0);
     const Vector mxx = hn::Load(d, m[0] + i), mxy = hn::Load(d, m[1] + i), mxz = hn::Load(d, m[2] + i);
     const Vector myy = hn::Load(d, m[3] + i), myz = hn::Load(d, m[4] + i), mzz = hn::Load(d, m[5] + i);
     xx = hn::Add(xx, mxx);
@@ -280,64 +354,86 @@ void projectMatrix(const BatchPoints& points, std::size_t count, const float m[6
   for (std::size_t k = 0; k < 21; ++k) addSum(d, all[k], sum[k]);
 }
 
-void zeroBeyond(float* values, std::size_t count, std::size_t lanes) {
-  for (std::size_t i = count; i % lanes != 0; ++i) values[i] = 0.0F;
-}
-
-void project(const BatchPoints& points, std::size_t count, BatchSums& sums, BatchTotals& totals) {
+void project(const BatchPoints& points, const PointUnit* units, std::size_t unit_count, const PointSums& sums,
+             BatchTotals& totals) {
   const Float d;
-  const std::size_t lanes = hn::Lanes(d);
-  zeroBeyond(sums.score, count, lanes);
-  for (auto& values : sums.pull) zeroBeyond(values, count, lanes);
-  for (auto& values : sums.curvature) zeroBeyond(values, count, lanes);
-  for (auto& values : sums.radial) zeroBeyond(values, count, lanes);
-
   Vector score = hn::Zero(d);
-  for (std::size_t i = 0; i < count; i += lanes) score = hn::Add(score, hn::Load(d, sums.score + i));
+  for (std::size_t u0 = 0; u0 < unit_count; u0 += kUnitsPerVector) {
+    score = hn::Add(score, hn::Load(d, sums.score + u0 * kPointsPerUnit));
+  }
   addSum(d, score, totals.score);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Vector pull = hn::Zero(d), by_x = pull, by_y = pull, by_z = pull;
-    for (std::size_t i = 0; i < count; i += lanes) {
-      const Vector g = hn::Load(d, sums.pull[axis] + i);
+    for (std::size_t u0 = 0; u0 < unit_count; u0 += kUnitsPerVector) {
+      const Vector g = hn::Load(d, sums.pull[axis] + u0 * kPointsPerUnit);
       pull = hn::Add(pull, g);
-      by_x = hn::MulAdd(g, hn::Load(d, points.rotated[0] + i), by_x);
-      by_y = hn::MulAdd(g, hn::Load(d, points.rotated[1] + i), by_y);
-      by_z = hn::MulAdd(g, hn::Load(d, points.rotated[2] + i), by_z);
+      by_x = hn::MulAdd(g, valuesOf(d, points.rotated[0], units + u0), by_x);
+      by_y = hn::MulAdd(g, valuesOf(d, points.rotated[1], units + u0), by_y);
+      by_z = hn::MulAdd(g, valuesOf(d, points.rotated[2], units + u0), by_z);
     }
     addSum(d, pull, totals.pull[axis]);
     addSum(d, by_x, totals.moment[3 * axis]);
     addSum(d, by_y, totals.moment[3 * axis + 1]);
     addSum(d, by_z, totals.moment[3 * axis + 2]);
   }
-  projectMatrix(points, count, sums.curvature, totals.curvature);
-  projectMatrix(points, count, sums.radial, totals.radial);
+  projectMatrix(points, units, unit_count, sums.curvature, totals.curvature);
+  projectMatrix(points, units, unit_count, sums.radial, totals.radial);
 }
 
-void scores(const BatchPoints& points, const BatchVoxels& voxels, const PairParameters& parameters, float* total,
-            float* best) {
-  const Float d;
-  const std::size_t lanes = hn::Lanes(d);
-  const Vector factor = hn::Set(d, parameters.exponent_factor);
-  const Vector amplitude = hn::Set(d, parameters.amplitude);
-  for (std::size_t run = 0; run < points.run_count; ++run) {
-    const RunVoxel* const begin = voxels.voxels + voxels.first[run];
-    const RunVoxel* const end = voxels.voxels + voxels.first[run + 1];
-    const auto last = static_cast<std::size_t>(points.run_starts[run + 1]);
-    for (auto i = static_cast<std::size_t>(points.run_starts[run]); i < last; i += lanes) {
-      const Vector px = hn::LoadU(d, points.from_centre[0] + i);
-      const Vector py = hn::LoadU(d, points.from_centre[1] + i);
-      const Vector pz = hn::LoadU(d, points.from_centre[2] + i);
-      Vector sum = hn::Zero(d), greatest = hn::Zero(d);
-      for (const RunVoxel* voxel = begin; voxel != end; ++voxel) {
-        const Offset u = offsetFrom<false>(d, *voxel, parameters.cells[voxel->number], px, py, pz, factor, hn::Zero(d));
-        const Vector e = hn::Mul(amplitude, exp2OfNegative(d, u.exponent));
-        sum = hn::Add(sum, e);
-        greatest = hn::Max(greatest, e);
-      }
-      hn::StoreU(sum, d, total + i);
-      hn::StoreU(greatest, d, best + i);
-    }
+template <bool weighted, bool within_radius>
+BatchTotals evaluatePairsOf(const BatchPoints& points, const float* confidence, const BatchUnits& units,
+                            const BatchVoxels& voxels, const PairParameters& parameters) {
+  BatchTotals totals{};
+  PointSums sums;
+  for (std::size_t first = 0; first < units.count; first += kUnitsPerPass) {
+    const std::size_t count = HWY_MIN(kUnitsPerPass, units.count - first);
+    totals.pair_count += sumPairs<weighted, within_radius>(points, confidence, units.units + first, count,
+                                                           voxels.voxels, parameters, sums);
+    project(points, units.units + first, count, sums, totals);
   }
+  return totals;
+}
+
+BatchTotals pairs(const BatchPoints& points, const float* confidence, const BatchUnits& units,
+                  const BatchVoxels& voxels, const PairParameters& parameters) {
+  if (parameters.within_radius) {
+    return parameters.weighted ? evaluatePairsOf<true, true>(points, confidence, units, voxels, parameters)
+                               : evaluatePairsOf<false, true>(points, confidence, units, voxels, parameters);
+  }
+  return parameters.weighted ? evaluatePairsOf<true, false>(points, confidence, units, voxels, parameters)
+                             : evaluatePairsOf<false, false>(points, confidence, units, voxels, parameters);
+}
+
+BatchScores scores(const BatchPoints& points, const float* non_ground, const BatchUnits& units,
+                   const BatchVoxels& voxels, const PairParameters& parameters) {
+  const Float d;
+  const Vector factor = hn::Set(d, parameters.exponent_factor);
+  Vector all = hn::Zero(d), all_non_ground = hn::Zero(d), best = hn::Zero(d);
+  for (std::size_t u0 = 0; u0 < units.count; u0 += kUnitsPerVector) {
+    const PointUnit* const unit = units.units + u0;
+    const Vector px = valuesOf(d, points.from_centre[0], unit);
+    const Vector py = valuesOf(d, points.from_centre[1], unit);
+    const Vector pz = valuesOf(d, points.from_centre[2], unit);
+    Vector sum = hn::Zero(d), greatest = hn::Zero(d);
+    const std::size_t voxel_count = unit->voxel_count;
+    for (std::size_t n = 0; n < voxel_count; ++n) {
+      const Offset u = offsetFrom(loadVoxels(d, unit, n, voxels.voxels, parameters.cells), px, py, pz);
+      const Vector e = exp2OfNegative(d, hn::Mul(u.squared_mahalanobis, factor));
+      sum = hn::Add(sum, e);
+      greatest = hn::Max(greatest, e);
+    }
+    const Vector used = usedLanes(d, unit);
+    sum = hn::Mul(used, sum);
+    all = hn::Add(all, sum);
+    all_non_ground = hn::MulAdd(sum, valuesOf(d, non_ground, unit), all_non_ground);
+    best = hn::MulAdd(used, greatest, best);
+  }
+  BatchScores result{};
+  addSum(d, all, result.all);
+  addSum(d, all_non_ground, result.non_ground);
+  addSum(d, best, result.best);
+  const auto amplitude = static_cast<double>(parameters.amplitude);
+  return {amplitude * result.all, amplitude * result.non_ground, amplitude * result.best};
 }
 
 }  // namespace
@@ -349,10 +445,11 @@ HWY_AFTER_NAMESPACE();
 namespace saw_ndt {
 
 HWY_EXPORT(columnsOf);
-HWY_EXPORT(transform);
 HWY_EXPORT(pairs);
-HWY_EXPORT(project);
 HWY_EXPORT(scores);
+HWY_EXPORT(transform);
+HWY_EXPORT(unitSize);
+HWY_EXPORT(unitsInVector);
 
 void transformBatch(const float* x, const float* y, const float* z, std::size_t count, const BatchPose& pose,
                     BatchPoints& points) {
@@ -363,18 +460,17 @@ void findColumns(const float* x, const float* y, std::size_t count, float invers
   SAW_NDT_DISPATCH(columnsOf)(x, y, count, inverse_column_m, columns);
 }
 
-std::size_t accumulatePairs(const BatchPoints& points, const float* confidence, const BatchVoxels& voxels,
-                            const PairParameters& parameters, BatchSums& sums) {
-  return SAW_NDT_DISPATCH(pairs)(points, confidence, voxels, parameters, sums);
+std::size_t pointsPerUnit() { return SAW_NDT_DISPATCH(unitSize)(); }
+std::size_t unitsPerVector() { return SAW_NDT_DISPATCH(unitsInVector)(); }
+
+BatchTotals evaluatePairs(const BatchPoints& points, const float* confidence, const BatchUnits& units,
+                          const BatchVoxels& voxels, const PairParameters& parameters) {
+  return SAW_NDT_DISPATCH(pairs)(points, confidence, units, voxels, parameters);
 }
 
-void addProjectedSums(const BatchPoints& points, std::size_t count, BatchSums& sums, BatchTotals& totals) {
-  SAW_NDT_DISPATCH(project)(points, count, sums, totals);
-}
-
-void accumulateScores(const BatchPoints& points, const BatchVoxels& voxels, const PairParameters& parameters,
-                      float* total, float* best) {
-  SAW_NDT_DISPATCH(scores)(points, voxels, parameters, total, best);
+BatchScores evaluateScores(const BatchPoints& points, const float* non_ground, const BatchUnits& units,
+                           const BatchVoxels& voxels, const PairParameters& parameters) {
+  return SAW_NDT_DISPATCH(scores)(points, non_ground, units, voxels, parameters);
 }
 
 }  // namespace saw_ndt

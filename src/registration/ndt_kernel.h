@@ -8,8 +8,10 @@
 namespace saw_ndt {
 
 // The inner loops of an evaluation, in single precision, compiled for each instruction set. Points come in batches that
-// stay in the first-level cache, in an order in which points of one voxel follow each other: such a run shares its
-// voxels, whose values are then broadcast to all lanes instead of being gathered for each.
+// stay in the first-level cache, in an order in which points of one voxel follow each other. Such a run shares its
+// voxels. It is cut into units of a few points, and a vector holds as many units as have room: each of its 128-bit
+// blocks has a unit and the voxel of that unit, whose values are loaded once and broadcast within the block instead of
+// being gathered for each point.
 
 constexpr std::size_t kPointsPerBatch = 1024;
 constexpr std::size_t kMostLanes = 16;
@@ -53,6 +55,24 @@ struct BatchVoxels {
   RunVoxel voxels[kPointsPerBatch * kMostNeighbours + 1];
 };
 
+/// Points of one run that share a block of a vector.
+struct PointUnit {
+  std::uint16_t first_point;
+  std::uint8_t point_count;   ///< 1 to pointsPerUnit(), or 0 for what only fills a vector
+  std::uint8_t voxel_count;   ///< voxels that the run pairs with, not 0; alike for all units of a vector
+  std::uint32_t first_voxel;  ///< in BatchVoxels::voxels
+};
+
+/// The units of a batch. Points of runs without voxels are in none.
+struct BatchUnits {
+  std::size_t count;  ///< a whole number of vectors
+  PointUnit units[kPointsPerBatch + kMostNeighbours * kMostLanes];
+};
+
+/// How many points a unit holds at most, and how many units a vector holds, for the instruction set in use.
+std::size_t pointsPerUnit();
+std::size_t unitsPerVector();
+
 /// What a pair scores: amplitude * exp(exponent_factor * m * ln 2) of the squared Mahalanobis distance m, and W_ij.
 struct PairParameters {
   const PackedNdtCell* cells;
@@ -63,14 +83,6 @@ struct PairParameters {
   float mismatch_slope;       ///< (1 - lambda_m) / |s_o - s_g|, 0 where the two are alike
   bool within_radius;         ///< only voxels whose mean is no farther than `radius_m`
   float radius_m;
-};
-
-/// Sums over the pairs of each point of a batch.
-struct alignas(64) BatchSums {
-  float score[kBatchRoom];
-  float pull[3][kBatchRoom];       ///< sum of W e C^-1 q: minus the force / d2
-  float curvature[6][kBatchRoom];  ///< sum of W e C^-1: xx xy xz yy yz zz
-  float radial[6][kBatchRoom];     ///< sum of W e C^-1 q q^T C^-1
 };
 
 /// The sums of a batch over all of its points, to be multiplied by powers of d2.
@@ -87,18 +99,20 @@ struct BatchTotals {
 void transformBatch(const float* x, const float* y, const float* z, std::size_t count, const BatchPose& pose,
                     BatchPoints& points);
 
-/// Sums over the pairs of every point.
+/// Sums over all pairs of a batch, J^T M J of every point among them, J = [I, -[r]x].
 /// @param confidence  s of each point; not read unless weighted
-/// @return the number of pairs
-std::size_t accumulatePairs(const BatchPoints& points, const float* confidence, const BatchVoxels& voxels,
-                            const PairParameters& parameters, BatchSums& sums);
+BatchTotals evaluatePairs(const BatchPoints& points, const float* confidence, const BatchUnits& units,
+                          const BatchVoxels& voxels, const PairParameters& parameters);
 
-/// Adds J^T M J of every point, J = [I, -[r]x], and the rest to the totals.
-void addProjectedSums(const BatchPoints& points, std::size_t count, BatchSums& sums, BatchTotals& totals);
+/// Sums of the scores of a batch with all weights 1.
+struct BatchScores {
+  double all;         ///< over all pairs
+  double non_ground;  ///< over all pairs of points that are not ground
+  double best;        ///< over the best pair of each point
+};
 
-/// The score of every point with all weights 1: over all of its pairs (`total`) and of its best one (`best`), 0 where
-/// it has none. Both arrays have room for kBatchRoom.
-void accumulateScores(const BatchPoints& points, const BatchVoxels& voxels, const PairParameters& parameters,
-                      float* total, float* best);
+/// @param non_ground  of each point 1 where it is not ground, otherwise 0
+BatchScores evaluateScores(const BatchPoints& points, const float* non_ground, const BatchUnits& units,
+                           const BatchVoxels& voxels, const PairParameters& parameters);
 
 }  // namespace saw_ndt

@@ -41,9 +41,8 @@ class VoxelGroups {
   std::uint16_t count_ = 0;
 };
 
-template <typename Value>
-void permute(Value* values, const std::array<std::uint16_t, kPointsPerBatch>& from, std::size_t count) {
-  std::array<Value, kPointsPerBatch> permuted;
+void permute(float* values, const std::array<std::uint16_t, kPointsPerBatch>& from, std::size_t count) {
+  std::array<float, kPointsPerBatch> permuted;
   for (std::size_t i = 0; i < count; ++i) permuted[i] = values[from[i]];
   std::copy_n(permuted.begin(), count, values);
 }
@@ -52,11 +51,10 @@ void permute(Value* values, const std::array<std::uint16_t, kPointsPerBatch>& fr
 
 void OrderedSource::resize(std::size_t size) {
   size_ = size;
-  for (std::vector<float>* values : {&x_, &y_, &z_, &confidence_}) {
+  for (std::vector<float>* values : {&x_, &y_, &z_, &confidence_, &non_ground_}) {
     values->resize(size + kRoomBehind);
     std::fill(values->end() - kRoomBehind, values->end(), 0.0F);
   }
-  label_.resize(size);
   groups_of_batch_.assign((size + kPointsPerBatch - 1) / kPointsPerBatch, 0);
 }
 
@@ -77,24 +75,29 @@ void OrderedSource::order(const SourcePoints& source, double resolution_m, const
   for (int label = 0; label < kStructuralLabelCount; ++label) {
     confidence_of_label[label] = static_cast<float>(confidence.of(static_cast<StructuralLabel>(label)));
   }
+  non_ground_count_ = 0;
   for (std::size_t i = 0; i < size_; ++i) {
     const std::uint32_t place = places_[columns_[i]]++;
     x_[place] = source.x[i];
     y_[place] = source.y[i];
     z_[place] = source.z[i];
-    label_[place] = source.label[i];
     confidence_[place] = confidence_of_label[source.label[i]];
+    const bool non_ground = source.label[i] != static_cast<std::uint8_t>(StructuralLabel::Ground);
+    non_ground_[place] = non_ground ? 1.0F : 0.0F;
+    non_ground_count_ += non_ground ? 1 : 0;
   }
 }
 
 void OrderedSource::thin(const OrderedSource& source, std::size_t stride) {
   resize((source.size() + stride - 1) / stride);
+  non_ground_count_ = 0;
   for (std::size_t i = 0; i < size_; ++i) {
     x_[i] = source.x_[i * stride];
     y_[i] = source.y_[i * stride];
     z_[i] = source.z_[i * stride];
-    label_[i] = source.label_[i * stride];
     confidence_[i] = source.confidence_[i * stride];
+    non_ground_[i] = source.non_ground_[i * stride];
+    non_ground_count_ += non_ground_[i] > 0.0F ? 1 : 0;
   }
 }
 
@@ -126,8 +129,8 @@ void OrderedSource::regroup(std::size_t first, const BatchPoints& batch) {
     }
   }
   const auto count = static_cast<std::size_t>(batch.run_starts[batch.run_count]);
-  for (std::vector<float>* values : {&x_, &y_, &z_, &confidence_}) permute(values->data() + first, from, count);
-  permute(label_.data() + first, from, count);
+  for (std::vector<float>* values : {&x_, &y_, &z_, &confidence_, &non_ground_})
+    permute(values->data() + first, from, count);
   groups_of_batch_[first / kPointsPerBatch] = groups.count();
 }
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <iterator>
 
-#include "registration/pair_parameters.h"
 #include "registration/batch_voxel_finder.h"
+#include "registration/pair_parameters.h"
 
 namespace saw_ndt {
 namespace {
@@ -49,13 +49,9 @@ NdtDerivatives VectorizedNdtObjective::evaluate(OrderedSource& source, const Eig
 #pragma omp for schedule(dynamic)
     for (std::ptrdiff_t b = 0; b < batch_count; ++b) {
       const std::size_t first = static_cast<std::size_t>(b) * kPointsPerBatch;
-      const std::size_t count = std::min(kPointsPerBatch, source.size() - first);
-      finder.find(source, first, count, scratch);
-      BatchTotals sums{};
-      sums.pair_count =
-          accumulatePairs(scratch.points, source.confidence() + first, scratch.voxels, parameters, scratch.sums);
-      addProjectedSums(scratch.points, count, scratch.sums, sums);
-      workspace.batch_totals[static_cast<std::size_t>(b)] = sums;
+      finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
+      workspace.batch_totals[static_cast<std::size_t>(b)] =
+          evaluatePairs(scratch.points, source.confidence() + first, scratch.units, scratch.voxels, parameters);
     }
   }
   BatchTotals total{};

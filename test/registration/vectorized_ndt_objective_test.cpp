@@ -167,12 +167,12 @@ TEST_F(VectorizedNdtObjectiveTest, PointsFarOutAreHarmless) {
   }
 }
 
-using Point = std::tuple<float, float, float, int, float>;
+using Point = std::tuple<float, float, float, float, float>;
 
 std::vector<Point> sortedPoints(const OrderedSource& source) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < source.size(); ++i) {
-    points.emplace_back(source.x()[i], source.y()[i], source.z()[i], source.label()[i], source.confidence()[i]);
+    points.emplace_back(source.x()[i], source.y()[i], source.z()[i], source.nonGround()[i], source.confidence()[i]);
   }
   std::sort(points.begin(), points.end());
   return points;
@@ -186,7 +186,7 @@ TEST_F(VectorizedNdtObjectiveTest, OrderingKeepsEveryPointWithItsLabelAndConfide
     const SourcePoints source = sourceOf(streetCorner(2, points));
     std::vector<Point> expected;
     for (std::size_t i = 0; i < source.size(); ++i) {
-      expected.emplace_back(source.x[i], source.y[i], source.z[i], source.label[i],
+      expected.emplace_back(source.x[i], source.y[i], source.z[i], source.label[i] == 1 ? 0.0F : 1.0F,
                             static_cast<float>(confidence.of(static_cast<StructuralLabel>(source.label[i]))));
     }
     std::sort(expected.begin(), expected.end());
@@ -207,7 +207,7 @@ TEST_F(VectorizedNdtObjectiveTest, ThinningTakesEveryNth) {
   ASSERT_EQ(thinned.size(), (all.size() + 3) / 4);
   for (std::size_t i = 0; i < thinned.size(); ++i) {
     EXPECT_EQ(thinned.x()[i], all.x()[4 * i]);
-    EXPECT_EQ(thinned.label()[i], all.label()[4 * i]);
+    EXPECT_EQ(thinned.nonGround()[i], all.nonGround()[4 * i]);
   }
 }
 

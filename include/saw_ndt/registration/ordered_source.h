@@ -25,12 +25,14 @@ class OrderedSource {
 
   std::size_t size() const { return size_; }
 
-  /// Coordinates (m, source frame), labels and confidences; behind the last point there is room for vectors.
+  /// Coordinates (m, source frame), confidences, and 1 for what is not labelled ground, otherwise 0; behind the last
+  /// point there is room for vectors.
   const float* x() const { return x_.data(); }
   const float* y() const { return y_.data(); }
   const float* z() const { return z_.data(); }
-  const std::uint8_t* label() const { return label_.data(); }
   const float* confidence() const { return confidence_.data(); }
+  const float* nonGround() const { return non_ground_.data(); }
+  std::size_t nonGroundCount() const { return non_ground_count_; }
 
   /// Whether so many runs are many more than the batch that begins at point `first` had when it was last put in order.
   bool mixedUp(std::size_t first, std::size_t run_count) const;
@@ -42,8 +44,8 @@ class OrderedSource {
   void resize(std::size_t size);
 
   std::size_t size_ = 0;
-  std::vector<float> x_, y_, z_, confidence_;
-  std::vector<std::uint8_t> label_;
+  std::size_t non_ground_count_ = 0;
+  std::vector<float> x_, y_, z_, confidence_, non_ground_;
   std::vector<std::uint32_t> groups_of_batch_;  // 0: not put in order yet
   std::vector<std::uint16_t> columns_;
   std::vector<std::uint32_t> places_;
