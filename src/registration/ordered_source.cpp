@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <utility>
 
 #include "registration/ndt_kernel.h"
 
@@ -13,6 +15,9 @@ constexpr std::size_t kRoomBehind = 2 * kMostLanes;
 
 // A column is as wide as so many voxels: wide enough that a batch holds whole voxels of several columns.
 constexpr double kVoxelsPerColumn = 8.0;
+
+// How many parts of the points are put in order side by side.
+constexpr std::size_t kParts = 4;
 
 // Which voxels the runs of a batch lie in, numbered as they are met.
 class VoxelGroups {
@@ -58,34 +63,59 @@ void OrderedSource::resize(std::size_t size) {
   groups_of_batch_.assign((size + kPointsPerBatch - 1) / kPointsPerBatch, 0);
 }
 
-void OrderedSource::order(const SourcePoints& source, double resolution_m, const ConfidenceOptions& confidence) {
+// A counting sort by columns, of parts of the points side by side: of a column, part after part.
+void OrderedSource::order(const SourcePoints& source, double resolution_m, const ConfidenceOptions& confidence,
+                          int threads) {
   resize(source.size());
   columns_.resize(size_);
-  findColumns(source.x.data(), source.y.data(), size_, static_cast<float>(1.0 / (kVoxelsPerColumn * resolution_m)),
-              columns_.data());
-  places_.assign(kColumnKeys, 0);
-  for (const std::uint16_t column : columns_) ++places_[column];
-  std::uint32_t begin = 0;
-  for (std::uint32_t& place : places_) {
-    const std::uint32_t count = place;
-    place = begin;
-    begin += count;
-  }
+  places_.assign(kParts * kColumnKeys, 0);
+  const auto inverse_column_m = static_cast<float>(1.0 / (kVoxelsPerColumn * resolution_m));
   std::array<float, kStructuralLabelCount> confidence_of_label;
   for (int label = 0; label < kStructuralLabelCount; ++label) {
     confidence_of_label[label] = static_cast<float>(confidence.of(static_cast<StructuralLabel>(label)));
   }
-  non_ground_count_ = 0;
-  for (std::size_t i = 0; i < size_; ++i) {
-    const std::uint32_t place = places_[columns_[i]]++;
-    x_[place] = source.x[i];
-    y_[place] = source.y[i];
-    z_[place] = source.z[i];
-    confidence_[place] = confidence_of_label[source.label[i]];
-    const bool non_ground = source.label[i] != static_cast<std::uint8_t>(StructuralLabel::Ground);
-    non_ground_[place] = non_ground ? 1.0F : 0.0F;
-    non_ground_count_ += non_ground ? 1 : 0;
+  const auto begin_of = [this](std::size_t part) { return part * size_ / kParts; };
+  std::array<std::size_t, kParts> non_ground_counts{};
+#pragma omp parallel num_threads(threads)
+  {
+#pragma omp for schedule(static)
+    for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(kParts); ++p) {
+      const auto part = static_cast<std::size_t>(p);
+      const std::size_t begin = begin_of(part), end = begin_of(part + 1);
+      findColumns(source.x.data() + begin, source.y.data() + begin, end - begin, inverse_column_m,
+                  columns_.data() + begin);
+      std::uint32_t* const counts = places_.data() + part * kColumnKeys;
+      for (std::size_t i = begin; i < end; ++i) ++counts[columns_[i]];
+    }
+#pragma omp single
+    {
+      std::uint32_t begin = 0;
+      for (std::size_t column = 0; column < kColumnKeys; ++column) {
+        for (std::size_t part = 0; part < kParts; ++part) {
+          std::uint32_t& place = places_[part * kColumnKeys + column];
+          begin += std::exchange(place, begin);
+        }
+      }
+    }
+#pragma omp for schedule(static)
+    for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(kParts); ++p) {
+      const auto part = static_cast<std::size_t>(p);
+      std::uint32_t* const places = places_.data() + part * kColumnKeys;
+      std::size_t non_ground_count = 0;
+      for (std::size_t i = begin_of(part); i < begin_of(part + 1); ++i) {
+        const std::uint32_t place = places[columns_[i]]++;
+        const bool non_ground = source.label[i] != static_cast<std::uint8_t>(StructuralLabel::Ground);
+        x_[place] = source.x[i];
+        y_[place] = source.y[i];
+        z_[place] = source.z[i];
+        confidence_[place] = confidence_of_label[source.label[i]];
+        non_ground_[place] = non_ground ? 1.0F : 0.0F;
+        non_ground_count += non_ground ? 1 : 0;
+      }
+      non_ground_counts[part] = non_ground_count;
+    }
   }
+  non_ground_count_ = std::accumulate(non_ground_counts.begin(), non_ground_counts.end(), std::size_t{0});
 }
 
 void OrderedSource::thin(const OrderedSource& source, std::size_t stride) {
@@ -103,7 +133,7 @@ void OrderedSource::thin(const OrderedSource& source, std::size_t stride) {
 
 bool OrderedSource::mixedUp(std::size_t first, std::size_t run_count) const {
   const std::uint32_t groups = groups_of_batch_[first / kPointsPerBatch];
-  return groups == 0 || 4 * run_count > 5 * groups + 16;
+  return groups == 0 || 2 * run_count > 3 * groups + 8;
 }
 
 void OrderedSource::regroup(std::size_t first, const BatchPoints& batch) {

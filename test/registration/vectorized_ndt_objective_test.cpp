@@ -200,6 +200,19 @@ TEST_F(VectorizedNdtObjectiveTest, OrderingKeepsEveryPointWithItsLabelAndConfide
   }
 }
 
+TEST_F(VectorizedNdtObjectiveTest, OrderDoesNotDependOnTheNumberOfThreads) {
+  const SourcePoints source = sourceOf(streetCorner(2));
+  const OrderedSource by_one = ordered(source);
+  for (const int threads : {2, 3, 5}) {
+    OrderedSource by_many;
+    by_many.order(source, 1.0, {}, threads);
+    ASSERT_EQ(by_many.size(), by_one.size());
+    EXPECT_EQ(by_many.nonGroundCount(), by_one.nonGroundCount());
+    EXPECT_TRUE(std::equal(by_one.x(), by_one.x() + by_one.size(), by_many.x()));
+    EXPECT_TRUE(std::equal(by_one.confidence(), by_one.confidence() + by_one.size(), by_many.confidence()));
+  }
+}
+
 TEST_F(VectorizedNdtObjectiveTest, ThinningTakesEveryNth) {
   OrderedSource all = ordered(sourceOf(streetCorner(2, 100)));
   OrderedSource thinned;

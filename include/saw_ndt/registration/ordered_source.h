@@ -19,7 +19,8 @@ class OrderedSource {
   /// Takes points over.
   /// @param resolution_m  edge of a voxel of the map
   /// @param confidence    s of a point by its label
-  void order(const SourcePoints& source, double resolution_m, const ConfidenceOptions& confidence);
+  /// @param threads       the order does not depend on it
+  void order(const SourcePoints& source, double resolution_m, const ConfidenceOptions& confidence, int threads = 1);
   /// Takes over every `stride`-th point of another.
   void thin(const OrderedSource& source, std::size_t stride);
 
