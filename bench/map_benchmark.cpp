@@ -146,7 +146,7 @@ void registerBenchmarks() {
   // What is made at first use shall not be timed.
   targetMap();
   fileMap();
-  benchmark::RegisterBenchmark("setInputTarget/pcl", setInputTargetOfPcl);
+  benchmark::RegisterBenchmark("pcl/setInputTarget", setInputTargetOfPcl);
   registerForEachInstructionSet("setInputTarget", setInputTarget);
   registerForEachInstructionSet("add_cloud", [](benchmark::State& state, int threads) {
     addCloud(state, Eigen::Isometry3d::Identity(), threads);
@@ -161,8 +161,8 @@ void registerBenchmarks() {
   registerForEachInstructionSet("build", build);
   registerForEachInstructionSet("fine", [](benchmark::State& state, int threads) { level(state, 1, threads); });
   registerForEachInstructionSet("coarse", [](benchmark::State& state, int threads) { level(state, 3, threads); });
-  benchmark::RegisterBenchmark("index", index);
-  benchmark::RegisterBenchmark("save", save);
+  registerForEachInstructionSet("index", [](benchmark::State& state, int /*threads*/) { index(state); }, {1});
+  registerForEachInstructionSet("save", [](benchmark::State& state, int /*threads*/) { save(state); }, {1});
   registerForEachInstructionSet("load", load);
 }
 

@@ -44,7 +44,7 @@ void filterByPcl(benchmark::State& state) {
 
 int main(int argc, char** argv) {
   return saw_ndt::runBenchmarkProgram(argc, argv, [] {
-    benchmark::RegisterBenchmark("pcl::VoxelGrid", filterByPcl);
+    benchmark::RegisterBenchmark("pcl/filter", filterByPcl);
     for (const char* name : {"weighted", "weighted-s50", "classical"}) {
       const saw_ndt::LocalizationMethod method = saw_ndt::LocalizationMethod::named(name);
       const std::vector<int> one_thread = {1};
