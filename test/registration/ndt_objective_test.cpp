@@ -37,31 +37,7 @@ auto centralDifference(const Function& f) -> decltype(f(0.0)) {
   return (8.0 * (right - left) - (far_right - far_left)) / (12.0 * kStep);
 }
 
-// Analytic derivatives against central differences. Pairs appear and vanish where a point crosses the face of a voxel
-// (DIRECT) or a sphere (RADIUS), which no derivative describes; points within 1 mm of such an event are left out, far
-// more than the steps of 1e-5 move any of them.
-SourcePoints awayFromEvents(const SourcePoints& source, const Eigen::Isometry3d& T, const NdtLevel& level) {
-  SourcePoints kept;
-  kept.labelled = source.labelled;
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    const Eigen::Vector3d p = T * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
-    bool keep = ((p.array() - p.array().round()).abs() > 1e-3).all();
-    const VoxelCoordinate voxel = p.array().floor().matrix().cast<int>();
-    for (int z = -1; z <= 1; ++z) {
-      for (int y = -1; y <= 1; ++y) {
-        for (int x = -1; x <= 1; ++x) {
-          const auto number = level.index().find(voxel + VoxelCoordinate(x, y, z));
-          if (number < 0) continue;
-          const double distance = (p - level.voxel(static_cast<std::size_t>(number)).mean(1.0)).norm();
-          keep = keep && std::abs(distance - 1.0) > 1e-3;
-        }
-      }
-    }
-    if (keep) kept.add(source.x[i], source.y[i], source.z[i], static_cast<StructuralLabel>(source.label[i]));
-  }
-  return kept;
-}
-
+// Analytic derivatives against central differences; the steps of 1e-5 move no point across an event.
 TEST_P(NdtObjectiveDerivatives, AgreeWithCentralDifferences) {
   const WeightedVoxelMap map = mapOf(streetCorner(1));
   const SourcePoints all = sourceOf(streetCorner(2, 300));

@@ -8,6 +8,7 @@
 
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/common/labels.h"
+#include "saw_ndt/map/ndt_level.h"
 #include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {
@@ -43,6 +44,31 @@ inline SourcePoints sourceOf(const pcl::PointCloud<pcl::PointXYZL>& cloud, bool 
     source.add(p.x, p.y, p.z, labelled ? static_cast<StructuralLabel>(p.label) : StructuralLabel::NonGround);
   }
   return source;
+}
+
+/// Pairs appear and vanish where a point crosses the face of a voxel of 1 m (DIRECT) or a sphere around a mean
+/// (RADIUS), which no derivative describes and where rounding decides: leaves out the points within 1 mm of such an
+/// event at T.
+inline SourcePoints awayFromEvents(const SourcePoints& source, const Eigen::Isometry3d& T, const NdtLevel& level) {
+  SourcePoints kept;
+  kept.labelled = source.labelled;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const Eigen::Vector3d p = T * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
+    bool keep = ((p.array() - p.array().round()).abs() > 1e-3).all();
+    const VoxelCoordinate voxel = p.array().floor().matrix().cast<int>();
+    for (int z = -1; z <= 1; ++z) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+          const auto number = level.index().find(voxel + VoxelCoordinate(x, y, z));
+          if (number < 0) continue;
+          const double distance = (p - level.voxel(static_cast<std::size_t>(number)).mean(1.0)).norm();
+          keep = keep && std::abs(distance - 1.0) > 1e-3;
+        }
+      }
+    }
+    if (keep) kept.add(source.x[i], source.y[i], source.z[i], static_cast<StructuralLabel>(source.label[i]));
+  }
+  return kept;
 }
 
 /// A pose whose every component is uniform within the bounds (m, rad).

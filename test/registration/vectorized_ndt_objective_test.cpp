@@ -49,20 +49,23 @@ TEST_P(VectorizedNdtObjectiveModes, AgreesWithDoublePrecision) {
   NdtObjective::Workspace workspace;
   std::mt19937 random(3);
   for (const int points : {1, 7, 300, 1500}) {
-    const SourcePoints source = sourceOf(streetCorner(2, points));
-    OrderedSource source_in_order = ordered(source);
+    const SourcePoints all = sourceOf(streetCorner(2, points));
+    // Of few points, roundings do not average out.
+    const double tolerance = points < 100 ? 5.0 * kTolerance : kTolerance;
     for (int trial = 0; trial < 4; ++trial) {
       const Eigen::Isometry3d T = randomPose(random, 0.4, 0.1);
+      const SourcePoints source = awayFromEvents(all, T, map.fine());
+      OrderedSource source_in_order = ordered(source);
       const NdtDerivatives expected = expected_objective.evaluate(source, T, 1, workspace);
       const NdtDerivatives got = objective.evaluate(source_in_order, T, 1, workspace_);
       EXPECT_EQ(got.pair_count, expected.pair_count);
       if (expected.score < 1e-3) continue;  // so far off that a rounded position is a great share of what is left
-      EXPECT_NEAR(got.score, expected.score, kTolerance * expected.score);
-      EXPECT_LE((got.gradient() - expected.gradient()).norm(), kTolerance * expected.gradient().norm());
-      EXPECT_LE((got.moment - expected.moment).norm(), kTolerance * expected.moment.norm());
-      EXPECT_LE((got.curvature - expected.curvature).norm(), kTolerance * expected.curvature.norm());
+      EXPECT_NEAR(got.score, expected.score, tolerance * expected.score);
+      EXPECT_LE((got.gradient() - expected.gradient()).norm(), tolerance * expected.gradient().norm());
+      EXPECT_LE((got.moment - expected.moment).norm(), tolerance * expected.moment.norm());
+      EXPECT_LE((got.curvature - expected.curvature).norm(), tolerance * expected.curvature.norm());
       EXPECT_LE((got.radial_curvature - expected.radial_curvature).norm(),
-                kTolerance * expected.radial_curvature.norm());
+                tolerance * expected.radial_curvature.norm());
     }
   }
 }
