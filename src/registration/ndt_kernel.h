@@ -3,45 +3,18 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "registration/batch_transform.h"
 #include "saw_ndt/map/ndt_level.h"
 
 namespace saw_ndt {
 
-// The inner loops of an evaluation, in single precision, compiled for each instruction set. Points come in batches that
-// stay in the first-level cache, in an order in which points of one voxel follow each other. Such a run shares its
+// The inner loops of an evaluation, in single precision, compiled for each instruction set. Points come in batches,
+// in an order in which points of one voxel follow each other. Such a run shares its
 // voxels. It is cut into units of a few points, and a vector holds as many units as have room: each of its 128-bit
 // blocks has a unit and the voxel of that unit, whose values are loaded once and broadcast within the block instead of
 // being gathered for each point.
 
-constexpr std::size_t kPointsPerBatch = 1024;
-constexpr std::size_t kMostLanes = 16;
-/// Loops write whole vectors, which reach beyond the last point of a batch, and begin at any point.
-constexpr std::size_t kBatchRoom = kPointsPerBatch + 2 * kMostLanes;
 constexpr std::size_t kMostNeighbours = 27;
-
-/// How source points move to the map. Positions are taken from the lower corner of an origin voxel near the source.
-struct BatchPose {
-  float rotation[9];     ///< row-major
-  float translation[3];  ///< m, from the origin voxel
-  float resolution_m;
-  float inverse_resolution;
-};
-
-/// The points of a batch at one pose, an array a coordinate.
-struct alignas(64) BatchPoints {
-  float rotated[3][kBatchRoom];         ///< R p (m)
-  float from_centre[3][kBatchRoom];     ///< T p from the centre of its own voxel (m)
-  std::int32_t voxel[3][kBatchRoom];    ///< its own voxel, counted from the origin voxel
-  std::int32_t run_starts[kBatchRoom];  ///< where another voxel begins, then the number of points
-  std::size_t run_count;
-};
-
-/// Edge of the square of columns that a key tells apart; columns farther out share the keys of nearer ones.
-constexpr int kColumnBits = 6;
-constexpr std::size_t kColumnKeys = std::size_t{1} << (2 * kColumnBits);
-
-/// Writes for every point the number of the vertical column that it lies in, row by row.
-void findColumns(const float* x, const float* y, std::size_t count, float inverse_column_m, std::uint16_t* columns);
 
 /// A voxel that the points of a run pair with.
 struct RunVoxel {
@@ -94,10 +67,6 @@ struct BatchTotals {
   double radial[21];     ///< likewise
   std::size_t pair_count;
 };
-
-/// Moves `count` points and finds their runs. The arrays reach 2 kMostLanes finite values beyond the last point.
-void transformBatch(const float* x, const float* y, const float* z, std::size_t count, const BatchPose& pose,
-                    BatchPoints& points);
 
 /// Sums over all pairs of a batch, J^T M J of every point among them, J = [I, -[r]x].
 /// @param confidence  s of each point; not read unless weighted

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "registration/ndt_kernel.h"
+#include "registration/batch_transform.h"
 
 namespace saw_ndt {
 namespace {
