@@ -6,6 +6,7 @@
 #include "pcl_ndt.h"
 #include "perturbed_starts.h"
 #include "registration_case.h"
+#include "repeated_evaluation.h"
 
 namespace {
 
@@ -15,10 +16,10 @@ using saw_ndt::RegistrationCase;
 void evaluate(benchmark::State& state, const RegistrationCase& scan, int threads) {
   saw_ndt::AlignmentOptions options = scan.options;
   options.threads = threads;
-  saw_ndt::NdtAligner aligner;
+  saw_ndt::RepeatedEvaluation evaluation(scan.map, scan.source, options);
   saw_ndt::NdtDerivatives derivatives;
   for (auto _ : state) {
-    derivatives = aligner.evaluate(scan.map, scan.source, saw_ndt::benchmarkPose(), options);
+    derivatives = evaluation.at(saw_ndt::benchmarkPose());
     benchmark::DoNotOptimize(derivatives);
   }
   saw_ndt::setTimePer(state, "pair", derivatives.pair_count);

