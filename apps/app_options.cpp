@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/common/instruction_set.h"
 #include "saw_ndt/io/input_file.h"
 
 namespace saw_ndt {
@@ -336,6 +337,7 @@ int runApp(int argc, const char* const* argv, AppOptions& app, const std::functi
   };
   try {
     if (app.parse(argc, argv)) {
+      instructionSet();                    // throws where the environment asks for one that there is not
       omp_set_num_threads(app.threads());  // also for parallel loops that are not told how many
       work();
     } else {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 
 #include "common/instruction_set_limit.h"
 #include "hwy/highway.h"
@@ -24,33 +25,40 @@ std::int64_t targetsBeyond(InstructionSet most) {
   return 0;
 }
 
-// The most that the environment variable allows.
-InstructionSet environmentLimit() {
-  const char* const name = std::getenv("SAW_NDT_INSTRUCTION_SET");
-  if (name == nullptr || *name == '\0') return InstructionSet::AVX512;
-  try {
-    return instructionSetNamed(name);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("environment variable SAW_NDT_INSTRUCTION_SET: " + std::string(error.what()));
-  }
-}
+struct EnvironmentLimit {
+  InstructionSet most = InstructionSet::AVX512;
+  std::string error;  // empty where the variable holds what it may
+};
 
-// Read once, before the first choice.
-InstructionSet readEnvironmentLimit() {
-  static const InstructionSet limit = [] {
-    const InstructionSet most = environmentLimit();
-    hwy::DisableTargets(targetsBeyond(most));
-    return most;
+// Read once, before the first choice. Loops may make that choice inside a parallel region, which no exception may
+// leave: a variable that makes no sense limits nothing there.
+const EnvironmentLimit& environmentLimit() {
+  static const EnvironmentLimit limit = [] {
+    EnvironmentLimit read;
+    const char* const name = std::getenv("SAW_NDT_INSTRUCTION_SET");
+    if (name == nullptr || *name == '\0') return read;
+    try {
+      read.most = instructionSetNamed(name);
+      hwy::DisableTargets(targetsBeyond(read.most));
+    } catch (const std::invalid_argument& error) {
+      read.error = "environment variable SAW_NDT_INSTRUCTION_SET: " + std::string(error.what());
+    }
+    return read;
   }();
   return limit;
 }
 
+InstructionSet checkedEnvironmentLimit() {
+  if (!environmentLimit().error.empty()) throw std::invalid_argument(environmentLimit().error);
+  return environmentLimit().most;
+}
+
 }  // namespace
 
-void obeyInstructionSetLimit() { readEnvironmentLimit(); }
+void obeyInstructionSetLimit() { environmentLimit(); }
 
 InstructionSet instructionSet() {
-  readEnvironmentLimit();
+  checkedEnvironmentLimit();
 #if HWY_ARCH_X86
   const std::int64_t targets = hwy::SupportedTargets();
   if ((targets & HWY_AVX3) != 0) return InstructionSet::AVX512;
@@ -61,7 +69,7 @@ InstructionSet instructionSet() {
 }
 
 void limitInstructionSet(InstructionSet most) {
-  hwy::DisableTargets(targetsBeyond(std::min(most, readEnvironmentLimit())));
+  hwy::DisableTargets(targetsBeyond(std::min(most, checkedEnvironmentLimit())));
 }
 
 const char* toString(InstructionSet set) {

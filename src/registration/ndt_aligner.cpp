@@ -57,7 +57,9 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
   const double resolution = map.resolution();
   StepLimits limits{options.max_iterations, options.translation_epsilon_m, options.rotation_epsilon_rad,
                     options.max_step_m * resolution};
-  ordered_.order(source, resolution, map.weighting().confidence, threadCount(options.threads));
+  if (options.arithmetic == Arithmetic::SINGLE || options.evaluate_likelihoods) {
+    ordered_.order(source, resolution, map.weighting().confidence, threadCount(options.threads));
+  }
 
   if (options.optimizer == Optimizer::DAMPED_NEWTON && options.use_coarse_level && !map.coarse().empty()) {
     const Evaluation evaluate =
@@ -90,7 +92,9 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
 NdtDerivatives NdtAligner::evaluate(const WeightedVoxelMap& map, const SourcePoints& source,
                                     const Eigen::Isometry3d& T_map_source, const AlignmentOptions& options) {
   options.check();
-  ordered_.order(source, map.resolution(), map.weighting().confidence, threadCount(options.threads));
+  if (options.arithmetic == Arithmetic::SINGLE) {
+    ordered_.order(source, map.resolution(), map.weighting().confidence, threadCount(options.threads));
+  }
   return evaluationOn(map.fine(), map, source, 1, options)(T_map_source);
 }
 

@@ -52,6 +52,12 @@ TEST_F(BuildMapApp, WrongUsageIsNamed) {
   expectFails(SAW_NDT_APP, quoted(drive_folder) + quoted(map_file) + "-sensor HDL-1", 2, {"-sensor", "HDL-1"});
 }
 
+TEST_F(BuildMapApp, AnInstructionSetThatThereIsNotIsNamed) {
+  setenv("SAW_NDT_INSTRUCTION_SET", "fastest", 1);
+  expectBuildFails(1, {"SAW_NDT_INSTRUCTION_SET", "fastest"}, "-threads 2");
+  unsetenv("SAW_NDT_INSTRUCTION_SET");
+}
+
 TEST_F(BuildMapApp, FailuresNameTheFileAndLeaveAnOldMapAlone) {
   folder.write("a.map", "an old map");
   expectFails(SAW_NDT_APP, quoted(folder.path() / "none") + quoted(map_file), 1, {"none: No such file"});
