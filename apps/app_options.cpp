@@ -17,8 +17,8 @@
 #include <utility>
 
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/common/instruction_set.h"
-#include "saw_ndt/io/input_file.h"
+#include "common/instruction_set.h"
+#include "common/input_file.h"
 
 namespace saw_ndt {
 

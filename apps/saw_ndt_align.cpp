@@ -6,9 +6,9 @@
 #include "pose_argument.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/point_cloud_file.h"
-#include "saw_ndt/localization/source_voxel_filter.h"
-#include "saw_ndt/registration/weighted_normal_distributions_transform.h"
-#include "saw_ndt/segmentation/cloud_view.h"
+#include "localization/source_voxel_filter.h"
+#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace {
 

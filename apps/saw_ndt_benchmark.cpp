@@ -2,9 +2,9 @@
 
 #include "app_options.h"
 #include "output_folder.h"
-#include "saw_ndt/evaluation/benchmark_output.h"
-#include "saw_ndt/evaluation/benchmark_report.h"
-#include "saw_ndt/io/staged_output.h"
+#include "report/benchmark_output.h"
+#include "report/benchmark_report.h"
+#include "io/staged_output.h"
 #include "segmentation_options.h"
 #include "stage_progress.h"
 

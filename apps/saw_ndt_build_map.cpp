@@ -2,9 +2,9 @@
 
 #include "app_options.h"
 #include "progress_bar.h"
-#include "saw_ndt/io/atomic_output.h"
-#include "saw_ndt/io/scan_selection.h"
-#include "saw_ndt/map/sequence_map.h"
+#include "common/atomic_output.h"
+#include "saw_ndt/drives/scan_selection.h"
+#include "saw_ndt/drives/drive_map.h"
 #include "segmentation_options.h"
 
 namespace {

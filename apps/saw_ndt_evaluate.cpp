@@ -4,7 +4,7 @@
 
 #include "app_options.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/evaluation/json.h"
+#include "report/json.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/io/trajectory.h"
 

@@ -5,8 +5,8 @@
 #include "pose_argument.h"
 #include "progress_bar.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/evaluation/sequence_localization.h"
-#include "saw_ndt/io/scan_selection.h"
+#include "report/sequence_localization.h"
+#include "saw_ndt/drives/scan_selection.h"
 #include "segmentation_options.h"
 
 namespace {

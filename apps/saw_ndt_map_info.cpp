@@ -3,8 +3,8 @@
 #include <iostream>
 
 #include "app_options.h"
-#include "saw_ndt/evaluation/map_summary.h"
-#include "saw_ndt/evaluation/voxel_cloud.h"
+#include "report/map_summary.h"
+#include "report/voxel_cloud.h"
 #include "saw_ndt/io/point_cloud_file.h"
 
 namespace {

@@ -3,10 +3,10 @@
 
 #include "app_options.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/evaluation/segmentation_score.h"
+#include "report/segmentation_score.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/io/point_cloud_file.h"
-#include "saw_ndt/segmentation/range_image_segmentation.h"
+#include "saw_ndt/pcl/range_image_segmentation.h"
 #include "segmentation_options.h"
 
 namespace {

@@ -5,10 +5,10 @@
 #include "progress_bar.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/trajectory.h"
-#include "saw_ndt/simulation/lidar_simulator.h"
-#include "saw_ndt/simulation/reference_noise.h"
-#include "saw_ndt/simulation/sequence_writer.h"
-#include "saw_ndt/simulation/simulated_drive.h"
+#include "simulation/lidar_simulator.h"
+#include "simulation/reference_noise.h"
+#include "simulation/sequence_writer.h"
+#include "simulation/simulated_drive.h"
 #include "scene_files.h"
 
 namespace {

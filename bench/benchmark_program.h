@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "saw_ndt/common/instruction_set.h"
-#include "saw_ndt/common/threads.h"
+#include "common/instruction_set.h"
+#include "common/threads.h"
 
 namespace saw_ndt {
 

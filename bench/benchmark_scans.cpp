@@ -8,16 +8,16 @@
 #include <memory>
 
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/evaluation/pcl_ndt_localizer.h"
+#include "report/pcl_ndt_localizer.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/localization/source_voxel_filter.h"
-#include "saw_ndt/map/sequence_map.h"
-#include "saw_ndt/segmentation/cloud_view.h"
-#include "saw_ndt/segmentation/ground_subsampling.h"
+#include "localization/source_voxel_filter.h"
+#include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/pcl/ground_subsampling.h"
 #ifdef SAW_NDT_SIMULATION
-#include "saw_ndt/simulation/lidar_simulator.h"
-#include "saw_ndt/simulation/sequence_writer.h"
-#include "saw_ndt/simulation/simulated_drive.h"
+#include "simulation/lidar_simulator.h"
+#include "simulation/sequence_writer.h"
+#include "simulation/simulated_drive.h"
 #endif
 
 namespace saw_ndt {

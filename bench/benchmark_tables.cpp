@@ -11,7 +11,7 @@
 
 #include "app_options.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/common/instruction_set.h"
+#include "common/instruction_set.h"
 
 namespace {
 

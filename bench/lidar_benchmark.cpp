@@ -4,7 +4,7 @@
 #include <random>
 
 #include "app_options.h"
-#include "saw_ndt/simulation/lidar_simulator.h"
+#include "simulation/lidar_simulator.h"
 
 namespace {
 

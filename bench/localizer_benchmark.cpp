@@ -6,7 +6,7 @@
 #include "pcl_ndt.h"
 #include "perturbed_starts.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/segmentation/cloud_view.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace {
 

@@ -17,7 +17,8 @@
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
 #include "saw_ndt/map/weighted_map_builder.h"
-#include "saw_ndt/registration/weighted_normal_distributions_transform.h"
+#include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 
 namespace saw_ndt {
 namespace {
@@ -35,7 +36,7 @@ const Cloud::Ptr& target() {
 const WeightedMapBuilder& targetBuilder() {
   static const WeightedMapBuilder builder = [] {
     WeightedMapBuilder filled(1.0);
-    filled.addCloud(*target(), Eigen::Isometry3d::Identity());
+    addCloud(filled, *target(), Eigen::Isometry3d::Identity());
     return filled;
   }();
   return builder;
@@ -104,7 +105,7 @@ void setInputTargetOfPcl(benchmark::State& state) {
 void addCloud(benchmark::State& state, const Eigen::Isometry3d& T_map_cloud, int threads) {
   for (auto _ : state) {
     WeightedMapBuilder builder(1.0);
-    builder.addCloud(*target(), T_map_cloud, threads);
+    addCloud(builder, *target(), T_map_cloud, threads);
     benchmark::DoNotOptimize(builder);
   }
   setTimePer(state, "point", target()->size());

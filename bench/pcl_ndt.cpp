@@ -5,7 +5,7 @@
 #include <pcl/registration/ndt.h>
 
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/registration/ndt_derivatives.h"
+#include "registration/ndt_derivatives.h"
 
 // PCL's library has it compiled; instantiated anew it would be held to this project's warnings.
 extern template class pcl::NormalDistributionsTransform<pcl::PointXYZ, pcl::PointXYZ>;

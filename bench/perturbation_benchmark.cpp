@@ -13,11 +13,11 @@
 #include "perturbed_starts.h"
 #include "progress_bar.h"
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/evaluation/statistics.h"
-#include "saw_ndt/io/scan_selection.h"
+#include "evaluation/statistics.h"
+#include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/map/sequence_map.h"
-#include "saw_ndt/segmentation/cloud_view.h"
+#include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace {
 

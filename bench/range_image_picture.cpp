@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include "app_options.h"
-#include "saw_ndt/evaluation/gnuplot.h"
+#include "report/gnuplot.h"
 #include "saw_ndt/io/kitti.h"
-#include "saw_ndt/segmentation/cloud_view.h"
-#include "saw_ndt/segmentation/range_image.h"
+#include "saw_ndt/pcl/cloud_view.h"
+#include "segmentation/range_image.h"
 #include "segmentation_options.h"
 
 namespace {

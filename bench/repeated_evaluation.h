@@ -2,7 +2,7 @@
 
 #include "saw_ndt/map/weighted_voxel_map.h"
 #include "saw_ndt/registration/alignment.h"
-#include "saw_ndt/registration/vectorized_ndt_objective.h"
+#include "registration/vectorized_ndt_objective.h"
 
 namespace saw_ndt {
 

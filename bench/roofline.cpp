@@ -16,7 +16,7 @@
 #include "registration_case.h"
 #include "repeated_evaluation.h"
 #include "roofline_kernels.h"
-#include "saw_ndt/evaluation/statistics.h"
+#include "evaluation/statistics.h"
 
 namespace {
 

@@ -9,11 +9,11 @@
 
 #include "app_options.h"
 #include "progress_bar.h"
-#include "saw_ndt/evaluation/scan_statistics.h"
-#include "saw_ndt/evaluation/statistics.h"
+#include "report/scan_statistics.h"
+#include "evaluation/statistics.h"
 #include "saw_ndt/io/kitti.h"
-#include "saw_ndt/io/scan_selection.h"
-#include "saw_ndt/segmentation/cloud_view.h"
+#include "saw_ndt/drives/scan_selection.h"
+#include "saw_ndt/pcl/cloud_view.h"
 #include "segmentation_options.h"
 
 namespace {

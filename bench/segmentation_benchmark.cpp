@@ -5,7 +5,7 @@
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/segmentation/cloud_view.h"
+#include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <pcl/registration/ndt.h>
 using Ndt = pcl::NormalDistributionsTransform<pcl::PointXYZ, pcl::PointXYZ>;
 #else
-#include "saw_ndt/registration/weighted_normal_distributions_transform.h"
+#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 using Ndt = saw_ndt::WeightedNormalDistributionsTransform<pcl::PointXYZ, pcl::PointXYZ>;
 #endif
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/common/threads.h"
+#include "common/threads.h"
 
 #include <omp.h>
 

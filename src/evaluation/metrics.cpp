@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/evaluation/statistics.h"
+#include "evaluation/statistics.h"
 
 namespace saw_ndt {
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/evaluation/statistics.h"
+#include "evaluation/statistics.h"
 
 #include <algorithm>
 #include <numeric>

@@ -9,11 +9,11 @@
 #include <iomanip>
 #include <stdexcept>
 
-#include "number_lines.h"
-#include "rigid_transform.h"
+#include "io/number_lines.h"
+#include "io/rigid_transform.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/io/atomic_output.h"
-#include "saw_ndt/io/input_file.h"
+#include "common/atomic_output.h"
+#include "common/input_file.h"
 #include "saw_ndt/io/trajectory.h"
 
 namespace saw_ndt {

@@ -1,11 +1,11 @@
-#include "number_lines.h"
+#include "io/number_lines.h"
 
 #include <charconv>
 #include <cmath>
 #include <fstream>
 
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/io/input_file.h"
+#include "common/input_file.h"
 
 namespace saw_ndt {
 

@@ -1,11 +1,11 @@
-#include "pcd_header.h"
+#include "io/pcd_header.h"
 
 #include <algorithm>
 #include <sstream>
 
-#include "number_lines.h"
+#include "io/number_lines.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/io/input_file.h"
+#include "common/input_file.h"
 
 namespace saw_ndt {
 

@@ -4,11 +4,11 @@
 #include <iomanip>
 #include <string>
 
-#include "number_lines.h"
-#include "rigid_transform.h"
+#include "io/number_lines.h"
+#include "io/rigid_transform.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/io/atomic_output.h"
+#include "common/atomic_output.h"
 
 namespace saw_ndt {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/common/threads.h"
+#include "common/threads.h"
 
 namespace saw_ndt {
 namespace {

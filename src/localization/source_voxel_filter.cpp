@@ -1,4 +1,4 @@
-#include "saw_ndt/localization/source_voxel_filter.h"
+#include "localization/source_voxel_filter.h"
 
 #include <algorithm>
 #include <cmath>

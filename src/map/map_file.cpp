@@ -1,4 +1,4 @@
-#include "saw_ndt/map/map_file.h"
+#include "map/map_file.h"
 
 #include <cerrno>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include "map/crc32.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/io/atomic_output.h"
-#include "saw_ndt/map/map_tile.h"
+#include "common/atomic_output.h"
+#include "map/map_tile.h"
 
 namespace saw_ndt {
 namespace {

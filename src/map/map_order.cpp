@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "saw_ndt/map/map_tile.h"
+#include "map/map_tile.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,4 +1,4 @@
-#include "saw_ndt/map/ndt_level.h"
+#include "map/ndt_level.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "map/merged_voxel.h"
-#include "saw_ndt/common/threads.h"
-#include "saw_ndt/map/voxel_sums_table.h"
+#include "common/threads.h"
+#include "map/voxel_sums_table.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,6 +1,6 @@
-#include "saw_ndt/map/voxel_index.h"
+#include "map/voxel_index.h"
 
-#include "saw_ndt/map/voxel_sums_table.h"
+#include "map/voxel_sums_table.h"
 
 namespace saw_ndt {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "map/voxel_runs.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/common/threads.h"
+#include "common/threads.h"
 
 namespace saw_ndt {
 namespace {
@@ -27,19 +27,19 @@ PointPlacement placementOf(const Eigen::Isometry3d& T_map_points, double resolut
 }
 
 // Adds points `first` to `last` of a cloud to a table; returns how many of them have a voxel.
-std::uint64_t addRange(const ScanView& points, const std::uint32_t* labels, std::size_t label_stride, std::size_t first,
-                       std::size_t last, const PointPlacement& placement, VoxelSumsTable& table) {
+std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::size_t first, std::size_t last,
+                       const PointPlacement& placement, VoxelSumsTable& table) {
   const auto block = std::make_unique<PointBlock>();
   block->stride = points.stride;
   std::uint64_t count = 0;
   for (std::size_t i = first; i < last; i += block->size) {
     block->xyz = points.point(i);
     block->size = std::min(last - i, PointBlock::kMostPoints);
-    if (labels == nullptr) {
+    if (!labels.known()) {
       std::fill_n(block->label, block->size, static_cast<std::int32_t>(StructuralLabel::NonGround));
     } else {
       for (std::size_t k = 0; k < block->size; ++k) {
-        block->label[k] = static_cast<std::int32_t>(labels[(i + k) * label_stride]);
+        block->label[k] = labels.first[(i + k) * labels.stride];
       }
     }
     const std::size_t run_count = findVoxelRuns(placement, *block);
@@ -76,17 +76,17 @@ void WeightedMapBuilder::requireKind(bool labelled) {
   }
 }
 
-void WeightedMapBuilder::addPoints(const ScanView& points, const std::uint32_t* labels, std::size_t label_stride,
-                                   const Eigen::Isometry3d& T_map_cloud, int threads) {
-  if (!T_map_cloud.matrix().allFinite()) throw std::invalid_argument("T_map_cloud is not finite");
-  requireKind(labels != nullptr);
+void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
+                                 int threads) {
+  if (!T_map_scan.matrix().allFinite()) throw std::invalid_argument("T_map_scan is not finite");
+  requireKind(labels.known());
   ++origin_.scan_count;
-  const PointPlacement placement = placementOf(T_map_cloud, origin_.resolution_m);
+  const PointPlacement placement = placementOf(T_map_scan, origin_.resolution_m);
   const std::size_t most_parts = std::max<std::size_t>(1, points.size / kLeastPointsPerThread);
   const int part_count =
       static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(threadCount(threads)), most_parts));
   if (part_count == 1) {
-    origin_.point_count += addRange(points, labels, label_stride, 0, points.size, placement, table_);
+    origin_.point_count += addRange(points, labels, 0, points.size, placement, table_);
     return;
   }
   struct Part {
@@ -100,7 +100,7 @@ void WeightedMapBuilder::addPoints(const ScanView& points, const std::uint32_t* 
     Part& part = parts[static_cast<std::size_t>(p)];
     const auto start = [&](int number) { return points.size * static_cast<std::size_t>(number) / part_count; };
     try {
-      part.point_count = addRange(points, labels, label_stride, start(p), start(p + 1), placement, part.table);
+      part.point_count = addRange(points, labels, start(p), start(p + 1), placement, part.table);
     } catch (...) {
       part.failure = std::current_exception();
     }

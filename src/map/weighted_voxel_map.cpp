@@ -7,8 +7,8 @@
 
 #include "map/map_order.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/map/map_file.h"
-#include "saw_ndt/map/map_tile.h"
+#include "map/map_file.h"
+#include "map/map_tile.h"
 
 namespace saw_ndt {
 

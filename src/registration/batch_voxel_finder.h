@@ -5,8 +5,8 @@
 
 #include "registration/ndt_kernel.h"
 #include "registration/voxel_pairs.h"
-#include "saw_ndt/registration/batch_workspace.h"
-#include "saw_ndt/registration/ordered_source.h"
+#include "registration/batch_workspace.h"
+#include "registration/ordered_source.h"
 
 namespace saw_ndt {
 

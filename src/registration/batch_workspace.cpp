@@ -1,4 +1,4 @@
-#include "saw_ndt/registration/batch_workspace.h"
+#include "registration/batch_workspace.h"
 
 #include "registration/batch_voxel_finder.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optimizers.h"
+#include "registration/optimizers.h"
 
 namespace saw_ndt {
 namespace {

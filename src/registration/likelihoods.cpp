@@ -1,4 +1,4 @@
-#include "saw_ndt/registration/likelihoods.h"
+#include "registration/likelihoods.h"
 
 #include <omp.h>
 

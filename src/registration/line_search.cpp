@@ -1,4 +1,4 @@
-#include "line_search.h"
+#include "registration/line_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "optimizers.h"
-#include "saw_ndt/common/threads.h"
-#include "saw_ndt/registration/vectorized_ndt_objective.h"
+#include "registration/optimizers.h"
+#include "common/threads.h"
+#include "registration/vectorized_ndt_objective.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,4 +1,4 @@
-#include "saw_ndt/registration/ndt_derivatives.h"
+#include "registration/ndt_derivatives.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "registration/batch_transform.h"
-#include "saw_ndt/map/ndt_level.h"
+#include "map/ndt_level.h"
 
 namespace saw_ndt {
 

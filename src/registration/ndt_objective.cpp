@@ -1,10 +1,10 @@
-#include "saw_ndt/registration/ndt_objective.h"
+#include "registration/ndt_objective.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "voxel_pairs.h"
+#include "registration/voxel_pairs.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,8 +1,8 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "line_search.h"
-#include "optimizers.h"
+#include "registration/line_search.h"
+#include "registration/optimizers.h"
 
 namespace saw_ndt {
 

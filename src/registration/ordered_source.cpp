@@ -1,4 +1,4 @@
-#include "saw_ndt/registration/ordered_source.h"
+#include "registration/ordered_source.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "registration/ndt_kernel.h"
-#include "saw_ndt/registration/ndt_objective.h"
+#include "registration/ndt_objective.h"
 
 namespace saw_ndt {
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/registration/score_function.h"
+#include "registration/score_function.h"
 
 #include <cmath>
 

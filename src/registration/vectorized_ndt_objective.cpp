@@ -1,4 +1,4 @@
-#include "saw_ndt/registration/vectorized_ndt_objective.h"
+#include "registration/vectorized_ndt_objective.h"
 
 #include <omp.h>
 

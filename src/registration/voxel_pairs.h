@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "saw_ndt/map/ndt_level.h"
-#include "saw_ndt/registration/ndt_objective.h"
+#include "map/ndt_level.h"
+#include "registration/ndt_objective.h"
 
 namespace saw_ndt {
 

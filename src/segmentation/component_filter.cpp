@@ -1,4 +1,4 @@
-#include "saw_ndt/segmentation/component_filter.h"
+#include "segmentation/component_filter.h"
 
 #include <omp.h>
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "saw_ndt/segmentation/component_filter.h"
+#include "segmentation/component_filter.h"
 
 namespace saw_ndt {
 

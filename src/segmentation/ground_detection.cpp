@@ -1,4 +1,4 @@
-#include "saw_ndt/segmentation/ground_detection.h"
+#include "segmentation/ground_detection.h"
 
 #include <omp.h>
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/segmentation/range_image.h"
+#include "segmentation/range_image.h"
 
 #include <omp.h>
 

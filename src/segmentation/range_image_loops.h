@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "saw_ndt/segmentation/ring_index.h"
+#include "segmentation/ring_index.h"
 
 namespace saw_ndt {
 

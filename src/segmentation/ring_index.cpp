@@ -1,4 +1,4 @@
-#include "saw_ndt/segmentation/ring_index.h"
+#include "segmentation/ring_index.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "beam_constants.h"
+#include "simulation/beam_constants.h"
 
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 
-#include "random_engine.h"
+#include "simulation/random_engine.h"
 
 namespace saw_ndt {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "saw_ndt/simulation/lidar_options.h"
+#include "simulation/lidar_options.h"
 
 namespace saw_ndt {
 

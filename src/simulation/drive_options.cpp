@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/drive_options.h"
+#include "simulation/drive_options.h"
 
 #include "saw_ndt/common/error.h"
 

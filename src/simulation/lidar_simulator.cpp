@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/lidar_simulator.h"
+#include "simulation/lidar_simulator.h"
 
 #include <algorithm>
 #include <boost/random/normal_distribution.hpp>
@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "beam_constants.h"
-#include "random_engine.h"
-#include "return_model.h"
+#include "simulation/beam_constants.h"
+#include "simulation/random_engine.h"
+#include "simulation/return_model.h"
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/common/threads.h"
-#include "saw_ndt/simulation/ray_caster.h"
+#include "common/threads.h"
+#include "simulation/ray_caster.h"
 
 namespace saw_ndt {
 namespace {

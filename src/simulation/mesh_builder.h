@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "saw_ndt/simulation/scene.h"
+#include "simulation/scene.h"
 #include "simulation/random_numbers.h"
 #include "simulation/scene_materials.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/simulation/object_meshes.h"
+#include "simulation/object_meshes.h"
 #include "simulation/random_numbers.h"
 
 namespace saw_ndt {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "saw_ndt/simulation/drive_options.h"
-#include "saw_ndt/simulation/route.h"
-#include "saw_ndt/simulation/scene.h"
-#include "saw_ndt/simulation/scene_description.h"
-#include "saw_ndt/simulation/terrain.h"
+#include "simulation/drive_options.h"
+#include "simulation/route.h"
+#include "simulation/scene.h"
+#include "simulation/scene_description.h"
+#include "simulation/terrain.h"
 
 namespace saw_ndt {
 

@@ -5,7 +5,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cstdint>
 
-#include "saw_ndt/simulation/scene_description.h"
+#include "simulation/scene_description.h"
 
 namespace saw_ndt {
 

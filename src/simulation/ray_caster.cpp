@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/ray_caster.h"
+#include "simulation/ray_caster.h"
 
 #include <embree3/rtcore.h>
 
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene_check.h"
+#include "simulation/scene_check.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,10 +1,10 @@
-#include "saw_ndt/simulation/reference_noise.h"
+#include "simulation/reference_noise.h"
 
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <stdexcept>
 
-#include "random_engine.h"
+#include "simulation/random_engine.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 

@@ -1,4 +1,4 @@
-#include "return_model.h"
+#include "simulation/return_model.h"
 
 #include <algorithm>
 #include <boost/random/exponential_distribution.hpp>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "beam_constants.h"
+#include "simulation/beam_constants.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "random_engine.h"
-#include "saw_ndt/simulation/lidar_options.h"
-#include "saw_ndt/simulation/ray_caster.h"
+#include "simulation/random_engine.h"
+#include "simulation/lidar_options.h"
+#include "simulation/ray_caster.h"
 
 namespace saw_ndt {
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/scene.h"
+#include "simulation/scene.h"
 
 namespace saw_ndt {
 

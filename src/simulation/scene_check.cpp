@@ -1,4 +1,4 @@
-#include "scene_check.h"
+#include "simulation/scene_check.h"
 
 #include <Eigen/LU>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "saw_ndt/simulation/scene.h"
+#include "simulation/scene.h"
 
 namespace saw_ndt {
 

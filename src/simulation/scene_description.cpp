@@ -1,12 +1,12 @@
-#include "saw_ndt/simulation/scene_description.h"
+#include "simulation/scene_description.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/io/input_file.h"
-#include "saw_ndt/simulation/object_meshes.h"
+#include "common/input_file.h"
+#include "simulation/object_meshes.h"
 
 namespace saw_ndt {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "saw_ndt/simulation/scene.h"
+#include "simulation/scene.h"
 
 namespace saw_ndt {
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/sequence_writer.h"
+#include "simulation/sequence_writer.h"
 
 #include <future>
 #include <iomanip>

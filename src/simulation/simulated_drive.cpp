@@ -1,8 +1,8 @@
-#include "saw_ndt/simulation/simulated_drive.h"
+#include "simulation/simulated_drive.h"
 
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/simulation/scene_builder.h"
-#include "saw_ndt/simulation/vehicle_driving.h"
+#include "simulation/scene_builder.h"
+#include "simulation/vehicle_driving.h"
 
 namespace saw_ndt {
 namespace {

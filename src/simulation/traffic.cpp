@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/simulation/object_meshes.h"
+#include "simulation/object_meshes.h"
 #include "simulation/random_numbers.h"
 
 namespace saw_ndt {

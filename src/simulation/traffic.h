@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "saw_ndt/simulation/drive_options.h"
-#include "saw_ndt/simulation/route.h"
-#include "saw_ndt/simulation/scene.h"
-#include "saw_ndt/simulation/scene_description.h"
-#include "saw_ndt/simulation/terrain.h"
-#include "saw_ndt/simulation/vehicle_motion.h"
+#include "simulation/drive_options.h"
+#include "simulation/route.h"
+#include "simulation/scene.h"
+#include "simulation/scene_description.h"
+#include "simulation/terrain.h"
+#include "simulation/vehicle_motion.h"
 
 namespace saw_ndt {
 

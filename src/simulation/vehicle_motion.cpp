@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/vehicle_motion.h"
+#include "simulation/vehicle_motion.h"
 
 #include <algorithm>
 #include <cmath>

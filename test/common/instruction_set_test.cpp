@@ -1,4 +1,4 @@
-#include "saw_ndt/common/instruction_set.h"
+#include "common/instruction_set.h"
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "saw_ndt/evaluation/json.h"
+#include "report/json.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/registration/weighted_normal_distributions_transform.h"
-#include "saw_ndt/segmentation/range_image_segmentation.h"
+#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
+#include "saw_ndt/pcl/range_image_segmentation.h"
 
 // Aligns a room's corner with a copy of itself that was moved by 12 cm. Exit code 0: found to within 5 mm.
 int main() {

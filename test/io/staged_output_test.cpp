@@ -1,4 +1,4 @@
-#include "saw_ndt/io/staged_output.h"
+#include "io/staged_output.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "allocation_counter.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/map/sequence_map.h"
-#include "saw_ndt/segmentation/cloud_view.h"
+#include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/pcl/cloud_view.h"
 #include "synthetic_drive.h"
 #include "temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/registration/likelihoods.h"
+#include "registration/likelihoods.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "map/map_fixtures.h"
 #include "registration/registration_fixtures.h"
-#include "saw_ndt/registration/score_function.h"
+#include "registration/score_function.h"
 
 namespace saw_ndt {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "map/map_fixtures.h"
 #include "registration/registration_fixtures.h"
-#include "saw_ndt/segmentation/cloud_view.h"
+#include "saw_ndt/pcl/cloud_view.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "real_data.h"
-#include "saw_ndt/evaluation/sequence_localization.h"
-#include "saw_ndt/io/scan_selection.h"
-#include "saw_ndt/map/sequence_map.h"
+#include "report/sequence_localization.h"
+#include "saw_ndt/drives/scan_selection.h"
+#include "saw_ndt/drives/drive_map.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,4 +1,4 @@
-#include "saw_ndt/localization/source_voxel_filter.h"
+#include "localization/source_voxel_filter.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <tuple>
 
-#include "saw_ndt/common/instruction_set.h"
+#include "common/instruction_set.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {

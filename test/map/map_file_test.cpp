@@ -1,4 +1,4 @@
-#include "saw_ndt/map/map_file.h"
+#include "map/map_file.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,9 @@
 
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/map/map_tile.h"
+#include "map/map_tile.h"
 #include "temporary_folder.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 namespace {
@@ -113,7 +114,7 @@ TEST_F(MapFile, RoundTripKeepsEverything) {
     WeightedMapBuilder builder(0.7);
     for (unsigned seed = 0; seed < 3; ++seed) {
       const pcl::PointCloud<pcl::PointXYZL> cloud = mixedCloud(seed, 4000, 90.0F);
-      labelled ? builder.addCloud(cloud, T) : builder.addCloud(withoutLabels(cloud), T);
+      labelled ? addCloud(builder, cloud, T) : addCloud(builder, withoutLabels(cloud), T);
     }
     const WeightedVoxelMap map = builder.build();
     map.save(path());

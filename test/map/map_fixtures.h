@@ -11,6 +11,7 @@
 #include <string>
 
 #include "saw_ndt/map/weighted_map_builder.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 
@@ -56,7 +57,7 @@ template <typename PointT>
 WeightedVoxelMap mapOf(const pcl::PointCloud<PointT>& cloud, double resolution_m = 1.0,
                        const VoxelWeighting& weighting = {}) {
   WeightedMapBuilder builder(resolution_m);
-  builder.addCloud(cloud, Eigen::Isometry3d::Identity());
+  addCloud(builder, cloud, Eigen::Isometry3d::Identity());
   return builder.build(weighting);
 }
 

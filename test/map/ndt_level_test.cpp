@@ -1,4 +1,4 @@
-#include "saw_ndt/map/ndt_level.h"
+#include "map/ndt_level.h"
 
 #include <gtest/gtest.h>
 

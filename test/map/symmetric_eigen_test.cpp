@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "saw_ndt/common/instruction_set.h"
+#include "common/instruction_set.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,4 +1,4 @@
-#include "saw_ndt/map/voxel_index.h"
+#include "map/voxel_index.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "map_fixtures.h"
-#include "saw_ndt/common/instruction_set.h"
-#include "saw_ndt/map/map_tile.h"
+#include "common/instruction_set.h"
+#include "map/map_tile.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 namespace {
@@ -48,7 +49,7 @@ void expectPlainSums(const pcl::PointCloud<PointT>& cloud, const Eigen::Isometry
     limitInstructionSet(set);
     for (const int threads : {1, 2, 3}) {
       WeightedMapBuilder builder(resolution_m);
-      builder.addCloud(cloud, T_map_cloud, threads);
+      addCloud(builder, cloud, T_map_cloud, threads);
       const WeightedVoxelMap map = builder.build({}, threads);
       EXPECT_EQ(map.origin().point_count, expected.point_count);
       ASSERT_EQ(map.entries().size(), expected.sums.size());
@@ -151,7 +152,7 @@ TEST(VoxelRuns, FacesOfVoxelsBelongWhereQuantizePutsThem) {
 TEST(VoxelRuns, LevelsDoNotDependOnThreadsOrInstructionSet) {
   const Cloud cloud = mixedCloud(7, 60000, 40.0F);
   WeightedMapBuilder builder(0.5);
-  builder.addCloud(cloud, Eigen::Isometry3d::Identity());
+  addCloud(builder, cloud, Eigen::Isometry3d::Identity());
   limitInstructionSet(InstructionSet::BASELINE);
   const WeightedVoxelMap expected = builder.build();
   ASSERT_GT(expected.entries().size(), 4000U);

@@ -1,4 +1,5 @@
 #include "saw_ndt/map/weighted_map_builder.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +42,7 @@ std::vector<Scan> drive() {
 
 WeightedMapBuilder builderOf(const std::vector<Scan>& scans) {
   WeightedMapBuilder builder(0.8);
-  for (const Scan& scan : scans) builder.addCloud(scan.cloud, scan.T_map_cloud);
+  for (const Scan& scan : scans) addCloud(builder, scan.cloud, scan.T_map_cloud);
   return builder;
 }
 
@@ -91,7 +92,7 @@ TEST(WeightedMapBuilder, AnyNumberOfThreadsGivesTheSameBytes) {
     for (std::size_t t = 0; t < thread_count; ++t) {
       threads.emplace_back([&, t] {
         for (std::size_t i = t; i < scans.size(); i += thread_count) {
-          parts[t].addCloud(scans[i].cloud, scans[i].T_map_cloud);
+          addCloud(parts[t], scans[i].cloud, scans[i].T_map_cloud);
         }
       });
     }
@@ -108,8 +109,8 @@ TEST(WeightedMapBuilder, CountsWhatItWasGiven) {
   cloud[4].z = std::numeric_limits<float>::infinity();
   cloud[5].y = 1e30F;
   WeightedMapBuilder builder(1.0);
-  builder.addCloud(cloud, Eigen::Isometry3d::Identity());
-  builder.addCloud(LabelledCloud(), Eigen::Isometry3d::Identity());
+  addCloud(builder, cloud, Eigen::Isometry3d::Identity());
+  addCloud(builder, LabelledCloud(), Eigen::Isometry3d::Identity());
   const WeightedVoxelMap map = builder.build();
   EXPECT_EQ(map.origin().point_count, 97U);
   EXPECT_EQ(map.origin().scan_count, 2U);
@@ -122,10 +123,10 @@ TEST(WeightedMapBuilder, CountsWhatItWasGiven) {
 TEST(WeightedMapBuilder, MemoryGrowsWithVoxelsNotWithPoints) {
   const Scan scan{mixedCloud(1, 3000), poseOf(1)};
   WeightedMapBuilder builder(1.0);
-  builder.addCloud(scan.cloud, scan.T_map_cloud);
+  addCloud(builder, scan.cloud, scan.T_map_cloud);
   const std::size_t entry_count = builder.build().entries().size();
   EXPECT_LT(entry_count, 3000U);
-  for (int i = 0; i < 50; ++i) builder.addCloud(scan.cloud, scan.T_map_cloud);
+  for (int i = 0; i < 50; ++i) addCloud(builder, scan.cloud, scan.T_map_cloud);
   const WeightedVoxelMap map = builder.build();
   EXPECT_EQ(map.entries().size(), entry_count);
   EXPECT_EQ(map.origin().point_count, 51U * 3000U);
@@ -136,12 +137,12 @@ TEST(WeightedMapBuilder, LabelledAndUnlabelledCloudsDoNotMix) {
   const pcl::PointCloud<pcl::PointXYZ> plain = withoutLabels(labelled);
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   WeightedMapBuilder with(1.0), without(1.0);
-  with.addCloud(labelled, T);
-  without.addCloud(plain, T);
+  addCloud(with, labelled, T);
+  addCloud(without, plain, T);
   EXPECT_TRUE(with.build().labelled());
   EXPECT_FALSE(without.build().labelled());
-  expectThrows<std::invalid_argument>([&] { with.addCloud(plain, T); }, {"labelled or unlabelled"});
-  expectThrows<std::invalid_argument>([&] { without.addCloud(labelled, T); }, {"labelled or unlabelled"});
+  expectThrows<std::invalid_argument>([&] { addCloud(with, plain, T); }, {"labelled or unlabelled"});
+  expectThrows<std::invalid_argument>([&] { addCloud(without, labelled, T); }, {"labelled or unlabelled"});
   expectThrows<std::invalid_argument>([&] { with.merge(without); }, {"labelled or unlabelled"});
   EXPECT_EQ(with.build().origin().scan_count, 1U);
   EXPECT_EQ(with.build().origin().point_count, 50U);
@@ -152,10 +153,10 @@ TEST(WeightedMapBuilder, RefusesWhatDoesNotHoldAndStaysAsItWas) {
   LabelledCloud bad = mixedCloud(1, 50);
   bad[49].label = 3;
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  expectThrows<std::invalid_argument>([&] { builder.addCloud(bad, T); }, {"label = 3"});
+  expectThrows<std::invalid_argument>([&] { addCloud(builder, bad, T); }, {"label = 3"});
   Eigen::Isometry3d not_finite = T;
   not_finite.translation().x() = std::nan("");
-  expectThrows<std::invalid_argument>([&] { builder.addCloud(mixedCloud(1, 50), not_finite); }, {"T_map_cloud"});
+  expectThrows<std::invalid_argument>([&] { addCloud(builder, mixedCloud(1, 50), not_finite); }, {"T_map_cloud"});
   EXPECT_EQ(builder.build().origin().scan_count, 0U);
   EXPECT_TRUE(builder.build().entries().empty());
   expectThrows<std::invalid_argument>([&] { builder.merge(WeightedMapBuilder(0.5)); }, {"resolution_m = 0.5"});
@@ -168,14 +169,14 @@ TEST(WeightedMapBuilder, ProjectedCoordinatesKeepTheirMillimetres) {
   const LabelledCloud cloud = mixedCloud(5, 6000);
   const Eigen::Isometry3d T_local = poseOf(3);
   WeightedMapBuilder at_origin(1.0);
-  at_origin.addCloud(cloud, T_local);
+  addCloud(at_origin, cloud, T_local);
   const WeightedVoxelMap expected = at_origin.build();
   // Multiples of the coarse voxel's 3 m, so that the voxels are the same ones.
   const VoxelCoordinate offset(500001, 4999998, -300);
   Eigen::Isometry3d T_far = T_local;
   T_far.translation() += offset.cast<double>();
   WeightedMapBuilder far(1.0);
-  far.addCloud(cloud, T_far);
+  addCloud(far, cloud, T_far);
   const WeightedVoxelMap map = far.build();
   for (const bool coarse : {false, true}) {
     const NdtLevel& near_level = coarse ? expected.coarse() : expected.fine();

@@ -4,13 +4,14 @@
 
 #include "registration/registration_fixtures.h"
 #include "saw_ndt/map/weighted_map_builder.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 namespace {
 
 WeightedVoxelMap cornerMap(const Eigen::Isometry3d& T_map_corner = Eigen::Isometry3d::Identity()) {
   WeightedMapBuilder builder(1.0);
-  builder.addCloud(streetCorner(1), T_map_corner);
+  addCloud(builder, streetCorner(1), T_map_corner);
   return builder.build();
 }
 
@@ -135,7 +136,7 @@ TEST(NdtAligner, AMapOfOneVoxelKeepsEveryFigureFinite) {
     point.label = 2;
     cloud.push_back(point);
   }
-  builder.addCloud(cloud, Eigen::Isometry3d::Identity());
+  addCloud(builder, cloud, Eigen::Isometry3d::Identity());
   const WeightedVoxelMap map = builder.build();
   ASSERT_EQ(map.fine().size(), 1u);
   NdtAligner aligner;

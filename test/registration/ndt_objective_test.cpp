@@ -1,16 +1,17 @@
-#include "saw_ndt/registration/ndt_objective.h"
+#include "registration/ndt_objective.h"
 
 #include <gtest/gtest.h>
 
 #include "registration/registration_fixtures.h"
 #include "saw_ndt/map/weighted_map_builder.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 namespace {
 
 WeightedVoxelMap mapOf(const pcl::PointCloud<pcl::PointXYZL>& cloud) {
   WeightedMapBuilder builder(1.0);
-  builder.addCloud(cloud, Eigen::Isometry3d::Identity());
+  addCloud(builder, cloud, Eigen::Isometry3d::Identity());
   return builder.build();
 }
 
@@ -206,8 +207,8 @@ TEST(NdtObjective, FarFromTheOriginNothingIsLost) {
   WeightedMapBuilder near_builder(1.0), far_builder(1.0);
   Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
   shift.translation() = Eigen::Vector3d(500000.0, 5000000.0, -300.0);
-  near_builder.addCloud(cloud, Eigen::Isometry3d::Identity());
-  far_builder.addCloud(cloud, shift);
+  addCloud(near_builder, cloud, Eigen::Isometry3d::Identity());
+  addCloud(far_builder, cloud, shift);
   const WeightedVoxelMap near_map = near_builder.build(), far_map = far_builder.build();
   const SourcePoints source = sourceOf(streetCorner(2, 500));
   std::mt19937 random(8);

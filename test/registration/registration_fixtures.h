@@ -8,7 +8,7 @@
 
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/common/labels.h"
-#include "saw_ndt/map/ndt_level.h"
+#include "map/ndt_level.h"
 #include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {

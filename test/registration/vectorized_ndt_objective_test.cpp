@@ -1,4 +1,4 @@
-#include "saw_ndt/registration/vectorized_ndt_objective.h"
+#include "registration/vectorized_ndt_objective.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,8 @@
 
 #include "map/map_fixtures.h"
 #include "registration/registration_fixtures.h"
-#include "saw_ndt/common/instruction_set.h"
+#include "common/instruction_set.h"
+#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 namespace {
@@ -120,7 +121,7 @@ TEST_F(VectorizedNdtObjectiveTest, FarFromTheOriginNothingIsLost) {
   Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
   shift.translation() = Eigen::Vector3d(500000.0, 5000000.0, -300.0);
   WeightedMapBuilder far_builder(1.0);
-  far_builder.addCloud(streetCorner(1), shift);
+  addCloud(far_builder, streetCorner(1), shift);
   const WeightedVoxelMap near_map = mapOf(streetCorner(1)), far_map = far_builder.build();
   OrderedSource source = ordered(sourceOf(streetCorner(2, 500)));
   std::mt19937 random(8);

@@ -9,7 +9,7 @@
 
 #include "real_data.h"
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/evaluation/segmentation_score.h"
+#include "report/segmentation_score.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 

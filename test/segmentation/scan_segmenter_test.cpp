@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "saw_ndt/common/instruction_set.h"
+#include "common/instruction_set.h"
 #include "segmentation/synthetic_scan.h"
 
 namespace saw_ndt {

@@ -9,7 +9,7 @@
 
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/common/sensor_model.h"
-#include "saw_ndt/segmentation/scan_view.h"
+#include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
 

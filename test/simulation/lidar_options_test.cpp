@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/lidar_options.h"
+#include "simulation/lidar_options.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saw_ndt/simulation/lidar_simulator.h"
+#include "simulation/lidar_simulator.h"
 #include "simple_scene.h"
 
 namespace saw_ndt {

@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/lidar_simulator.h"
+#include "simulation/lidar_simulator.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "saw_ndt/segmentation/cloud_view.h"
-#include "saw_ndt/segmentation/range_image.h"
+#include "saw_ndt/pcl/cloud_view.h"
+#include "segmentation/range_image.h"
 #include "simple_scene.h"
 #include "temporary_folder.h"
 

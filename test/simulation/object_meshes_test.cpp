@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/object_meshes.h"
+#include "simulation/object_meshes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/ray_caster.h"
+#include "simulation/ray_caster.h"
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 #include <map>
 
 #include "real_data.h"
-#include "saw_ndt/evaluation/scan_statistics.h"
+#include "report/scan_statistics.h"
 #include "saw_ndt/io/kitti.h"
-#include "saw_ndt/segmentation/cloud_view.h"
-#include "saw_ndt/simulation/lidar_simulator.h"
+#include "saw_ndt/pcl/cloud_view.h"
+#include "simulation/lidar_simulator.h"
 #include "simulation/short_drive.h"
 
 namespace saw_ndt {

@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/reference_noise.h"
+#include "simulation/reference_noise.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/route.h"
+#include "simulation/route.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/scene_builder.h"
+#include "simulation/scene_builder.h"
 
 #include <gtest/gtest.h>
 

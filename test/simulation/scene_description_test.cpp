@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/scene_description.h"
+#include "simulation/scene_description.h"
 
 #include "saw_ndt/common/error.h"
 #include "temporary_folder.h"

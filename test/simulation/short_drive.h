@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "saw_ndt/simulation/simulated_drive.h"
+#include "simulation/simulated_drive.h"
 
 namespace saw_ndt {
 

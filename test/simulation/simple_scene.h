@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/simulation/lidar_options.h"
-#include "saw_ndt/simulation/scene.h"
-#include "saw_ndt/simulation/vehicle_motion.h"
+#include "simulation/lidar_options.h"
+#include "simulation/scene.h"
+#include "simulation/vehicle_motion.h"
 
 namespace saw_ndt {
 

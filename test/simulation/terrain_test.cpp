@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/terrain.h"
+#include "simulation/terrain.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "saw_ndt/simulation/vehicle_driving.h"
+#include "simulation/vehicle_driving.h"
 
 #include <gtest/gtest.h>
 

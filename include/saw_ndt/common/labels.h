@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace saw_ndt {
 
@@ -24,5 +26,20 @@ inline StructuralLabel structuralLabelFromValue(std::uint32_t value) {
   }
   return static_cast<StructuralLabel>(value);
 }
+
+/// The labels of a scan's points, wherever they lie in memory: nothing is copied, nothing is owned.
+struct LabelView {
+  LabelView() = default;
+  /// One label after the other.
+  explicit LabelView(const std::vector<StructuralLabel>& labels)
+      : first(reinterpret_cast<const std::uint8_t*>(labels.data())) {}
+
+  /// The label of the first point, a value of StructuralLabel; null: no labels are known.
+  const std::uint8_t* first = nullptr;
+  /// Bytes from one label to the next.
+  std::size_t stride = 1;
+  /// Whether there are labels, be it of no point at all.
+  bool known() const { return first != nullptr; }
+};
 
 }  // namespace saw_ndt

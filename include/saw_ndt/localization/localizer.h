@@ -6,12 +6,12 @@
 
 #include "saw_ndt/localization/localization_method.h"
 #include "saw_ndt/localization/motion_prediction.h"
-#include "saw_ndt/localization/source_voxel_filter.h"
+#include "localization/source_voxel_filter.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
-#include "saw_ndt/registration/likelihoods.h"
+#include "registration/likelihoods.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
-#include "saw_ndt/segmentation/scan_view.h"
+#include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
 

@@ -1,31 +1,29 @@
 #pragma once
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-
 #include <Eigen/Geometry>
 
-#include "saw_ndt/map/voxel_sums_table.h"
+#include "map/voxel_sums_table.h"
+#include "saw_ndt/common/labels.h"
+#include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
-#include "saw_ndt/segmentation/scan_view.h"
 
 namespace saw_ndt {
 
-/// Collects labelled points into voxel sums, cloud after cloud. Memory grows with the voxels met, never with the
-/// points; the result does not depend on the order of clouds or on how they were spread over builders.
+/// Collects labelled points into voxel sums, scan after scan. Memory grows with the voxels met, never with the
+/// points; the result does not depend on the order of scans or on how they were spread over builders.
 class WeightedMapBuilder {
  public:
   /// @param resolution_m  edge of a voxel, positive
   /// @throws std::invalid_argument
   explicit WeightedMapBuilder(double resolution_m);
 
-  /// Adds the finite points of a cloud. With a `label` field the points count under their StructuralLabel, without one
-  /// the map becomes an unlabelled one; clouds of the two kinds do not mix.
-  /// @param T_map_cloud  pose of the cloud's frame in the map frame
-  /// @param threads      0: all cores; the result does not depend on it
-  /// @throws std::invalid_argument for a label that is no StructuralLabel, a pose that is not finite, or mixed kinds
-  template <typename PointT>
-  void addCloud(const pcl::PointCloud<PointT>& cloud, const Eigen::Isometry3d& T_map_cloud, int threads = 1);
+  /// Adds the finite points of a scan. With labels the points count under them, without any the map becomes an
+  /// unlabelled one; scans of the two kinds do not mix. addCloud() of pcl/cloud_view.h adds clouds of PCL.
+  /// @param labels      of each point of the scan, values of StructuralLabel
+  /// @param T_map_scan  pose of the scan's frame in the map frame
+  /// @param threads     0: all cores; the result does not depend on it
+  /// @throws std::invalid_argument for a pose that is not finite, or mixed kinds
+  void addScan(const ScanView& scan, const LabelView& labels, const Eigen::Isometry3d& T_map_scan, int threads = 1);
 
   /// Adds all that another builder of the same resolution has collected. @throws std::invalid_argument
   void merge(const WeightedMapBuilder& other);
@@ -35,10 +33,6 @@ class WeightedMapBuilder {
   WeightedVoxelMap build(const VoxelWeighting& weighting = {}, int threads = 1) const;
 
  private:
-  /// @param labels        that of the first point, a StructuralLabel; null where points have none
-  /// @param label_stride  values from one point's label to the next one's
-  void addPoints(const ScanView& points, const std::uint32_t* labels, std::size_t label_stride,
-                 const Eigen::Isometry3d& T_map_cloud, int threads);
   void requireKind(bool labelled);
 
   MapOrigin origin_;
@@ -46,5 +40,3 @@ class WeightedMapBuilder {
 };
 
 }  // namespace saw_ndt
-
-#include "saw_ndt/map/impl/weighted_map_builder.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "saw_ndt/map/ndt_level.h"
+#include "map/ndt_level.h"
 
 namespace saw_ndt {
 

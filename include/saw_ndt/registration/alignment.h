@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/registration/likelihoods.h"
-#include "saw_ndt/registration/ndt_objective.h"
-#include "saw_ndt/registration/score_function.h"
+#include "registration/likelihoods.h"
+#include "registration/ndt_objective.h"
+#include "registration/score_function.h"
 
 namespace saw_ndt {
 

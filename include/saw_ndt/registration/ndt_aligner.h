@@ -4,8 +4,8 @@
 
 #include "saw_ndt/map/weighted_voxel_map.h"
 #include "saw_ndt/registration/alignment.h"
-#include "saw_ndt/registration/batch_workspace.h"
-#include "saw_ndt/registration/ordered_source.h"
+#include "registration/batch_workspace.h"
+#include "registration/ordered_source.h"
 
 namespace saw_ndt {
 

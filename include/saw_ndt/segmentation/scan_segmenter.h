@@ -5,10 +5,10 @@
 
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/common/sensor_model.h"
-#include "saw_ndt/segmentation/component_filter.h"
-#include "saw_ndt/segmentation/ground_detection.h"
-#include "saw_ndt/segmentation/range_image.h"
-#include "saw_ndt/segmentation/scan_view.h"
+#include "segmentation/component_filter.h"
+#include "segmentation/ground_detection.h"
+#include "segmentation/range_image.h"
+#include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
 

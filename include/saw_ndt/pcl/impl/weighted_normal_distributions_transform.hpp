@@ -1,0 +1,179 @@
+#pragma once
+
+#include <pcl/common/transforms.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/map/weighted_map_builder.h"
+#include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/pcl/impl/lazy_kdtree.h"
+
+namespace saw_ndt {
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::WeightedNormalDistributionsTransform() {
+  this->reg_name_ = "WeightedNormalDistributionsTransform";
+  this->tree_.reset(new LazyKdTree<PointTarget>());
+  this->max_iterations_ = 35;
+  this->transformation_epsilon_ = 0.1;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setInputTarget(
+    const PointCloudTargetConstPtr& cloud) {
+  if (!cloud) throw std::invalid_argument("setInputTarget: the cloud is a null pointer");
+  buildTarget(*cloud);
+  this->target_ = cloud;
+  this->target_cloud_updated_ = true;
+  target_is_map_ = false;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setInputSource(
+    const PointCloudSourceConstPtr& cloud) {
+  if (!cloud) throw std::invalid_argument("setInputSource: the cloud is a null pointer");
+  this->source_cloud_updated_ = true;
+  pcl::PCLBase<PointSource>::setInputCloud(cloud);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setTargetMap(
+    const std::shared_ptr<const WeightedVoxelMap>& map) {
+  if (!map) throw std::invalid_argument("setTargetMap: the map is a null pointer");
+  map_ = map;
+  resolution_ = static_cast<float>(map->resolution());
+  target_is_map_ = true;
+  // pcl::Registration will not align without a target cloud.
+  auto means = pcl::make_shared<PointCloudTarget>();
+  means->resize(map->fine().size());
+  for (std::size_t i = 0; i < map->fine().size(); ++i) {
+    (*means)[i].getVector3fMap() = map->fine().voxel(i).mean(map->resolution()).template cast<float>();
+  }
+  this->target_ = means;
+  this->target_cloud_updated_ = true;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::buildTarget(
+    const PointCloudTarget& cloud) {
+  WeightedMapBuilder builder(resolution_);
+  addCloud(builder, cloud, Eigen::Isometry3d::Identity(), options_.threads);
+  map_ = std::make_shared<const WeightedVoxelMap>(builder.build(weighting_, options_.threads));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setResolution(float resolution) {
+  checkOption(resolution > 0.0f && std::isfinite(resolution), "resolution", resolution, "positive");
+  if (resolution == resolution_) return;
+  if (target_is_map_) {
+    throw std::logic_error("setResolution: the target is a map of resolution " + std::to_string(resolution_));
+  }
+  resolution_ = resolution;
+  if (this->target_) buildTarget(*this->target_);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setMinPointPerVoxel(
+    unsigned int min_points_per_voxel) {
+  VoxelWeighting weighting = weighting_;
+  weighting.min_points_per_voxel = static_cast<int>(min_points_per_voxel);
+  setVoxelWeighting(weighting);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setVoxelWeighting(
+    const VoxelWeighting& weighting) {
+  weighting.check();
+  weighting_ = weighting;
+  if (map_ && !target_is_map_) {
+    map_ = std::make_shared<const WeightedVoxelMap>(map_->reweighted(weighting, options_.threads));
+  }
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setAlignmentOptions(
+    const AlignmentOptions& options) {
+  options.check();
+  options_ = options;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::convertTransform(
+    const Eigen::Matrix<double, 6, 1>& x, Affine3& trans) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = x.head<3>();
+  T.linear() = rotationFromEuler(x.tail<3>());
+  trans.matrix() = T.matrix().template cast<Scalar>();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::convertTransform(
+    const Eigen::Matrix<double, 6, 1>& x, Matrix4& trans) {
+  Affine3 affine;
+  convertTransform(x, affine);
+  trans = affine.matrix();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+SourcePoints WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::selectedSource() const {
+  constexpr bool kLabelled = pcl::traits::has_label<PointSource>::value;
+  SourcePoints points;
+  points.labelled = kLabelled && options_.use_weights && map_->labelled();
+  points.reserve(this->indices_->size());
+  for (const auto index : *this->indices_) {
+    const PointSource& point = (*this->input_)[static_cast<std::size_t>(index)];
+    if (!pcl::isFinite(point)) continue;
+    StructuralLabel label = StructuralLabel::NonGround;
+    if constexpr (kLabelled) {
+      if (points.labelled) {
+        label = structuralLabelFromValue(point.label);
+        if (map_->weighting().confidence.of(label) <= 0.0) continue;
+      }
+    }
+    points.add(point.x, point.y, point.z, label);
+  }
+  return points;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+AlignmentOptions WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::effectiveOptions() const {
+  AlignmentOptions options = options_;
+  options.max_iterations = std::max(1, this->max_iterations_);
+  const double translation = this->transformation_epsilon_;
+  const double cosine = this->transformation_rotation_epsilon_;
+  if (options.optimizer == Optimizer::NEWTON_MORE_THUENTE) {
+    constexpr double kNever = 1e300;
+    options.translation_epsilon_m = translation > 0.0 ? std::sqrt(translation) : kNever;
+    options.rotation_epsilon_rad = cosine > 0.0 ? std::max(1e-12, std::acos(std::min(cosine, 1.0))) : kNever;
+    if (translation <= 0.0 && cosine <= 0.0) options.translation_epsilon_m = 1e-300;
+    options.line_search_min_step = std::max(0.0, translation / 2.0);
+  } else {
+    const AlignmentOptions defaults;
+    if (translation > 0.0) options.translation_epsilon_m = std::min(translation, defaults.translation_epsilon_m);
+    if (cosine > 0.0 && cosine < 1.0) {
+      options.rotation_epsilon_rad = std::min(std::acos(cosine), defaults.rotation_epsilon_rad);
+    }
+  }
+  return options;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::computeTransformation(
+    PointCloudSource& output, const Matrix4& guess) {
+  Eigen::Isometry3d T_target_source;
+  T_target_source.matrix() = guess.template cast<double>();
+  if (T_target_source.matrix().allFinite()) T_target_source = normalizedRotation(T_target_source);
+  result_ = aligner_.align(*map_, selectedSource(), T_target_source, effectiveOptions());
+
+  this->converged_ = result_.converged();
+  this->nr_iterations_ = result_.iterations;
+  this->final_transformation_ = result_.T_map_source.matrix().template cast<Scalar>();
+  this->transformation_ = this->final_transformation_;
+  pcl::transformPointCloud(output, output, this->final_transformation_);
+}
+
+}  // namespace saw_ndt

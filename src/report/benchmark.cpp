@@ -1,0 +1,193 @@
+#include "report/benchmark.h"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "saw_ndt/common/error.h"
+#include "report/pcl_ndt_localizer.h"
+#include "saw_ndt/drives/scan_selection.h"
+#include "saw_ndt/drives/drive_map.h"
+
+namespace saw_ndt {
+namespace {
+
+/// One map read in each way that a method asks for; methods that ask for the same share it.
+class MapReadings {
+ public:
+  explicit MapReadings(WeightedVoxelMap map) : map_(std::move(map)) {}
+
+  std::shared_ptr<const WeightedVoxelMap> with(const VoxelWeighting& weighting) {
+    for (const auto& reading : readings_) {
+      if (reading->weighting() == weighting) return reading;
+    }
+    return readings_.emplace_back(std::make_shared<const WeightedVoxelMap>(map_.reweighted(weighting)));
+  }
+
+  const WeightedVoxelMap& map() const { return map_; }
+
+ private:
+  WeightedVoxelMap map_;
+  std::vector<std::shared_ptr<const WeightedVoxelMap>> readings_;
+};
+
+/// A localizer of ours or PCL's, at its initial pose.
+template <typename AnyLocalizer>
+ScanLocalizer startedAt(const Eigen::Isometry3d& T_map_base, std::shared_ptr<AnyLocalizer> localizer) {
+  localizer->setInitialPose(T_map_base);
+  return [localizer](const ScanView& scan, double stamp_s) { return localizer->localize(scan, stamp_s); };
+}
+
+LocalizerOptions optionsOf(const std::string& method, LocalizerOptions options) {
+  if (method != kPclNdtMethod) {
+    options.method = LocalizationMethod::named(method);
+    return options;
+  }
+  options.method = LocalizationMethod::named("classical");
+  options.method.name = kPclNdtMethod;
+  return options;
+}
+
+template <typename Value>
+void requireDifferent(const std::vector<Value>& values, const char* name) {
+  if (values.empty()) throw std::invalid_argument(std::string(name) + ": there is none");
+  if (std::set<Value>(values.begin(), values.end()).size() != values.size()) {
+    throw std::invalid_argument(std::string(name) + ": one is given twice");
+  }
+}
+
+void begin(const BenchmarkProgress& progress, const std::string& description, std::size_t steps) {
+  if (progress.stage_begins) progress.stage_begins(description, steps);
+}
+
+}  // namespace
+
+const char* toString(MapDrive drive) { return drive == MapDrive::SAME ? "same drive" : "other drive"; }
+
+const char* shortName(MapDrive drive) { return drive == MapDrive::SAME ? "same" : "other"; }
+
+std::vector<std::string> benchmarkMethodNames() {
+  std::vector<std::string> names = LocalizationMethod::names();
+  names.emplace_back(kPclNdtMethod);
+  return names;
+}
+
+void BenchmarkOptions::check() const {
+  requireDifferent(methods, "methods");
+  requireDifferent(drives, "drives");
+  const std::vector<std::string> known = benchmarkMethodNames();
+  for (const std::string& method : methods) {
+    if (std::find(known.begin(), known.end(), method) != known.end()) continue;
+    std::string message = "method = " + method + ": must be one of";
+    for (const std::string& name : known) message += " " + name;
+    throw std::invalid_argument(message);
+  }
+  checkOption(skip_s >= 0.0, "skip_s", skip_s, "0 or more");
+  WeightedMapBuilder{resolution_m};
+  localizer.check();
+}
+
+Benchmark::Benchmark(std::vector<BenchmarkDrive> drives, BenchmarkOptions options)
+    : drives_(std::move(drives)), options_((options.check(), std::move(options))) {
+  std::vector<std::string> names;
+  for (const BenchmarkDrive& drive : drives_) names.push_back(drive.sequence.name());
+  requireDifferent(names, "names of the drives");
+  for (const BenchmarkDrive& drive : drives_) {
+    const std::vector<int> scans = parseScanSelection(options_.scans, drive.sequence.scanCount());
+    const std::vector<double> stamps_s = drive.sequence.stamps();
+    drive.sequence.posesLidar();
+    if (!anyScanAfterSkip(scans, stamps_s, options_.skip_s)) {
+      std::ostringstream message;
+      message << "skip_s = " << options_.skip_s << ": " << drive.sequence.folder().string()
+              << " has no scan left after so many seconds: lower -skip, to 0 for a short drive";
+      throw std::invalid_argument(message.str());
+    }
+    for (const MapDrive map_drive : options_.drives) {
+      if (map_drive == MapDrive::OTHER && !drive.other) {
+        throw std::invalid_argument(drive.sequence.folder().string() + ": no other drive is given for its map");
+      }
+      const KittiSequence& source = map_drive == MapDrive::SAME ? drive.sequence : *drive.other;
+      parseScanSelection(options_.map_scans, source.scanCount());
+      source.posesLidar();
+    }
+  }
+}
+
+std::size_t Benchmark::stageCount() const {
+  const bool with_pcl = std::count(options_.methods.begin(), options_.methods.end(), kPclNdtMethod) > 0;
+  return drives_.size() * options_.drives.size() * (with_pcl ? 3 : 2);
+}
+
+std::vector<BenchmarkRun> Benchmark::run(const BenchmarkProgress& progress) const {
+  std::vector<BenchmarkRun> runs;
+  for (const MapDrive map_drive : options_.drives) {
+    for (const BenchmarkDrive& drive : drives_) runs.push_back(runDrive(drive, map_drive, progress));
+  }
+  return runs;
+}
+
+BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive,
+                                 const BenchmarkProgress& progress) const {
+  const KittiSequence& source = map_drive == MapDrive::SAME ? drive.sequence : *drive.other;
+  const std::vector<int> map_scans = parseScanSelection(options_.map_scans, source.scanCount());
+  const std::vector<int> scans = parseScanSelection(options_.scans, drive.sequence.scanCount());
+  const std::vector<Eigen::Isometry3d> reference_lidar = drive.sequence.posesLidar();
+  const LocalizerOptions& common = options_.localizer;
+  const std::string prefix = drive.sequence.name() + ", " + toString(map_drive) + ": ";
+
+  BenchmarkRun result;
+  result.sequence = drive.sequence.name();
+  result.drive = map_drive;
+  result.map_scans = map_scans.size();
+  result.T_base_lidar = common.T_base_lidar;
+  result.T_camera_lidar = drive.sequence.T_camera_lidar();
+  result.skip_s = options_.skip_s;
+  result.min_likelihood = common.acceptance.min_likelihood;
+  for (const int scan : scans) {
+    result.T_map_base.push_back(reference_lidar[static_cast<std::size_t>(scan)] * common.T_base_lidar.inverse());
+  }
+
+  begin(progress, prefix + "building the map from " + std::to_string(map_scans.size()) + " scans", map_scans.size());
+  SequenceMapOptions map_options;
+  map_options.resolution_m = options_.resolution_m;
+  map_options.segmentation = common.segmentation;
+  map_options.threads = common.alignment.threads;
+  MapReadings maps(buildSequenceMap(source, map_scans, map_options, progress.step_done).build());
+  result.voxels = voxelCloud(maps.map());
+
+  std::vector<ScanLocalizer> localizers;
+  for (const std::string& method : options_.methods) {
+    const LocalizerOptions options = optionsOf(method, common);
+    const auto map = maps.with(options.method.voxels);
+    if (method == kPclNdtMethod) {
+      begin(progress, prefix + "giving PCL the points of " + std::to_string(map_scans.size()) + " scans",
+            map_scans.size());
+      localizers.push_back(startedAt(result.T_map_base.front(),
+                                     std::make_shared<PclNdtLocalizer>(mapPoints(source, map_scans, progress.step_done),
+                                                                       options_.resolution_m, map, options)));
+    } else {
+      localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(map, options)));
+    }
+  }
+
+  const std::size_t turns = scans.size() * localizers.size();
+  begin(progress,
+        prefix + "localizing " + std::to_string(scans.size()) + " scans by " + std::to_string(localizers.size()) +
+            (localizers.size() == 1 ? " method" : " methods"),
+        turns);
+  std::vector<SequenceLocalization> runs = localizeByTurns(localizers, drive.sequence, scans, progress.step_done);
+  for (std::size_t m = 0; m < runs.size(); ++m) {
+    const std::string& method = options_.methods[m];
+    LocalizerOptions options = optionsOf(method, common);
+    if (method == kPclNdtMethod) options.alignment.threads = 1;
+    LocalizationSummary summary =
+        summarize(runs[m], options, reference_lidar, drive.sequence.stamps(), options_.skip_s);
+    result.cells.push_back({method, std::move(runs[m]), std::move(summary)});
+  }
+  return result;
+}
+
+}  // namespace saw_ndt

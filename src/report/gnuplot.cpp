@@ -1,0 +1,95 @@
+#include "report/gnuplot.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <system_error>
+
+#include "saw_ndt/common/error.h"
+#include "common/atomic_output.h"
+
+namespace saw_ndt {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr char kFont[] = "DejaVu Sans,11";
+constexpr double kPngScale = 1.5;  // sharp on dense displays
+
+std::string inSingleQuotes(const std::string& text, const std::string& quote_within) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? quote_within : std::string(1, c);
+  return result + "'";
+}
+
+std::string pngTerminal() {
+  std::ostringstream text;
+  text << "pngcairo fontscale " << kPngScale << " linewidth " << kPngScale << " pointscale " << kPngScale;
+  return text.str();
+}
+
+/// @param scale  of the picture's size
+std::string drawn(const GnuplotPicture& picture, const std::string& terminal, double scale, const fs::path& file) {
+  std::ostringstream script;
+  script << "reset\nset terminal " << terminal << " noenhanced background rgb 'white' size " << scale * picture.width_px
+         << ',' << scale * picture.height_px << " font " << gnuplotQuoted(kFont) << "\nset encoding utf8\nset output "
+         << gnuplotQuoted(file.string()) << "\n"
+         << picture.commands << "\nunset output\n";
+  return script.str();
+}
+
+std::string firstLineOf(const fs::path& file) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.find_first_not_of(" \t^") != std::string::npos) return line;
+  }
+  return "failed without a word";
+}
+
+/// Files that go with this object.
+struct Scratch {
+  std::vector<fs::path> files;
+  ~Scratch() {
+    std::error_code ignored;
+    for (const fs::path& file : files) fs::remove(file, ignored);
+  }
+};
+
+}  // namespace
+
+bool gnuplotFound() { return std::system("command -v gnuplot > /dev/null 2>&1") == 0; }
+
+void drawPicture(const GnuplotPicture& picture, const fs::path& folder) {
+  const fs::path script_file = folder / (picture.name + ".gnuplot"), message_file = folder / (picture.name + ".log");
+  const Scratch scratch{{script_file, message_file}};
+  // A file rather than a pipe, which would end this process where gnuplot gives up early.
+  AtomicOutput script(script_file);
+  script.stream() << picture.data << drawn(picture, pngTerminal(), kPngScale, folder / (picture.name + ".png"));
+  if (!picture.many_points) script.stream() << drawn(picture, "svg", 1.0, folder / (picture.name + ".svg"));
+  script.commit();
+  const std::string command = "gnuplot " + inSingleQuotes(script_file.string(), "'\\''") + " > /dev/null 2> " +
+                              inSingleQuotes(message_file.string(), "'\\''");
+  if (std::system(command.c_str()) != 0) throw Error("gnuplot", picture.name, firstLineOf(message_file));
+}
+
+std::string gnuplotQuoted(const std::string& text) {
+  std::string line = text;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return inSingleQuotes(line, "''");
+}
+
+std::string gnuplotData(const std::string& name, const std::vector<std::vector<double>>& columns) {
+  std::ostringstream text;
+  text << name << " << END_OF_DATA\n" << std::setprecision(9);
+  for (std::size_t row = 0; row < columns.front().size(); ++row) {
+    for (const std::vector<double>& column : columns) text << column[row] << ' ';
+    text << '\n';
+  }
+  text << "END_OF_DATA\n";
+  return text.str();
+}
+
+}  // namespace saw_ndt

@@ -1,0 +1,46 @@
+#include "report/json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace saw_ndt {
+
+nlohmann::ordered_json toJson(const TrajectoryMetrics& metrics) {
+  return {{"evaluated_scans", metrics.evaluated_scans}, {"ate_rmse_m", metrics.ate_rmse_m},
+          {"position_mean_m", metrics.position_mean_m}, {"position_median_m", metrics.position_median_m},
+          {"position_p95_m", metrics.position_p95_m},   {"position_max_m", metrics.position_max_m},
+          {"yaw_mae_deg", metrics.yaw_mae_deg},         {"yaw_p95_deg", metrics.yaw_p95_deg}};
+}
+
+nlohmann::ordered_json toJson(const KittiRelativeErrors& errors) {
+  return {{"kitti_segments", errors.segments},
+          {"kitti_translation_percent", errors.translation_percent},
+          {"kitti_rotation_deg_per_m", errors.rotation_deg_per_m}};
+}
+
+nlohmann::ordered_json toJson(const DurationStatistics& durations) {
+  return {{"mean", durations.mean}, {"p50", durations.p50}, {"p95", durations.p95}, {"max", durations.max}};
+}
+
+nlohmann::ordered_json toJson(const LocalizationSummary& summary) {
+  nlohmann::ordered_json json;
+  json["method"] = summary.method;
+  json["scans"] = summary.scans;
+  json["accepted"] = summary.accepted;
+  json["rejected"] = summary.rejected;
+  json["total_ms"] = toJson(summary.total_ms);
+  json["segment_ms"] = toJson(summary.segment_ms);
+  json["filter_ms"] = toJson(summary.filter_ms);
+  json["align_ms"] = toJson(summary.align_ms);
+  json["source_points_mean"] = summary.source_points_mean;
+  json["iterations_mean"] = summary.iterations_mean;
+  json["evaluations_mean"] = summary.evaluations_mean;
+  json["likelihood_mean"] = summary.likelihood_mean;
+  json["nearest_voxel_likelihood_mean"] = summary.nearest_voxel_likelihood_mean;
+  json["non_ground_likelihood_mean"] = summary.non_ground_likelihood_mean;
+  json["peak_rss_mb"] = summary.peak_rss_mb;
+  json["threads"] = summary.threads;
+  if (summary.metrics) json.update(toJson(*summary.metrics));
+  return json;
+}
+
+}  // namespace saw_ndt

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "saw_ndt/evaluation/metrics.h"
+#include "saw_ndt/evaluation/relative_errors.h"
+#include "report/sequence_localization.h"
+#include "evaluation/statistics.h"
+
+// The one public header that needs nlohmann-json; the library's others do without.
+namespace saw_ndt {
+
+/// An object with a member for each field, of the field's name.
+nlohmann::ordered_json toJson(const TrajectoryMetrics& metrics);
+
+/// {"kitti_segments", "kitti_translation_percent", "kitti_rotation_deg_per_m"}
+nlohmann::ordered_json toJson(const KittiRelativeErrors& errors);
+
+/// {"mean", "p50", "p95", "max"}
+nlohmann::ordered_json toJson(const DurationStatistics& durations);
+
+/// The object that is summary.json; the errors are members of it where they are known.
+nlohmann::ordered_json toJson(const LocalizationSummary& summary);
+
+}  // namespace saw_ndt

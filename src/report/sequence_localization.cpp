@@ -1,0 +1,143 @@
+#include "report/sequence_localization.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/common/geometry.h"
+#include "common/threads.h"
+#include "report/json.h"
+#include "common/atomic_output.h"
+#include "io/staged_output.h"
+#include "saw_ndt/io/trajectory.h"
+#include "saw_ndt/pcl/cloud_view.h"
+
+namespace saw_ndt {
+namespace {
+
+double peakResidentMegabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+template <typename Field>
+std::vector<double> collect(const SequenceLocalization& run, Field field) {
+  std::vector<double> values;
+  values.reserve(run.results.size());
+  for (const LocalizationResult& result : run.results) values.push_back(static_cast<double>(field(result)));
+  return values;
+}
+
+void writeFrames(const std::filesystem::path& path, const SequenceLocalization& run) {
+  AtomicOutput output(path);
+  std::ostream& out = output.stream();
+  out << "scan,stamp,accepted,reason,converged,iterations,likelihood,correction_m,correction_deg,source_points,"
+         "segment_ms,filter_ms,align_ms,total_ms,evaluations,unweighted_likelihood,non_ground_likelihood,"
+         "nearest_voxel_likelihood\n";
+  out << std::fixed;
+  for (std::size_t i = 0; i < run.results.size(); ++i) {
+    const LocalizationResult& r = run.results[i];
+    out << run.scans[i] << ',' << std::setprecision(9) << r.stamp_s << ',' << r.accepted() << ','
+        << toString(r.acceptance) << ',' << r.alignment.converged() << ',' << r.alignment.iterations << ','
+        << std::setprecision(6) << r.alignment.likelihood << ',' << r.correction_m << ','
+        << degreesFromRadians(r.correction_rad) << ',' << r.source_points << ',' << std::setprecision(3)
+        << r.times.segment_ms << ',' << r.times.filter_ms << ',' << r.times.align_ms << ',' << r.times.total_ms << ','
+        << r.alignment.evaluations << ',' << std::setprecision(6) << r.likelihoods.unweighted << ','
+        << r.likelihoods.non_ground << ',' << r.likelihoods.nearest_voxel << '\n';
+  }
+  output.commit();
+}
+
+}  // namespace
+
+SequenceLocalization localizeSequence(Localizer& localizer, const KittiSequence& sequence,
+                                      const std::vector<int>& scans, const std::function<void()>& scan_done) {
+  const auto localize = [&](const ScanView& scan, double stamp_s) { return localizer.localize(scan, stamp_s); };
+  return localizeByTurns({localize}, sequence, scans, scan_done).front();
+}
+
+std::vector<SequenceLocalization> localizeByTurns(const std::vector<ScanLocalizer>& localizers,
+                                                  const KittiSequence& sequence, const std::vector<int>& scans,
+                                                  const std::function<void()>& turn_done) {
+  const std::vector<double> stamps_s = sequence.stamps();
+  std::vector<SequenceLocalization> runs(localizers.size());
+  for (SequenceLocalization& run : runs) run.scans = scans;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const pcl::PointCloud<pcl::PointXYZI> cloud = sequence.readScan(scans[i]);
+    for (std::size_t turn = 0; turn < localizers.size(); ++turn) {
+      const std::size_t whose = (i + turn) % localizers.size();
+      runs[whose].results.push_back(localizers[whose](viewOf(cloud), stamps_s[static_cast<std::size_t>(scans[i])]));
+      if (turn_done) turn_done();
+    }
+  }
+  return runs;
+}
+
+bool anyScanAfterSkip(const std::vector<int>& scans, const std::vector<double>& stamps_s, double skip_s) {
+  double first_s = stamps_s[static_cast<std::size_t>(scans.front())], last_s = first_s;
+  for (const int scan : scans) {
+    first_s = std::min(first_s, stamps_s[static_cast<std::size_t>(scan)]);
+    last_s = std::max(last_s, stamps_s[static_cast<std::size_t>(scan)]);
+  }
+  return last_s - first_s >= skip_s;
+}
+
+LocalizationSummary summarize(const SequenceLocalization& run, const LocalizerOptions& options,
+                              const std::vector<Eigen::Isometry3d>& reference_lidar,
+                              const std::vector<double>& stamps_s, double skip_s) {
+  using R = LocalizationResult;
+  LocalizationSummary summary;
+  summary.method = options.method.name;
+  summary.scans = run.results.size();
+  for (const R& result : run.results) ++(result.accepted() ? summary.accepted : summary.rejected);
+  summary.total_ms = durationStatistics(collect(run, [](const R& r) { return r.times.total_ms; }));
+  summary.segment_ms = durationStatistics(collect(run, [](const R& r) { return r.times.segment_ms; }));
+  summary.filter_ms = durationStatistics(collect(run, [](const R& r) { return r.times.filter_ms; }));
+  summary.align_ms = durationStatistics(collect(run, [](const R& r) { return r.times.align_ms; }));
+  summary.source_points_mean = mean(collect(run, [](const R& r) { return r.source_points; }));
+  summary.iterations_mean = mean(collect(run, [](const R& r) { return r.alignment.iterations; }));
+  summary.evaluations_mean = mean(collect(run, [](const R& r) { return r.alignment.evaluations; }));
+  summary.likelihood_mean = mean(collect(run, [](const R& r) { return r.alignment.likelihood; }));
+  summary.nearest_voxel_likelihood_mean = mean(collect(run, [](const R& r) { return r.likelihoods.nearest_voxel; }));
+  summary.non_ground_likelihood_mean = mean(collect(run, [](const R& r) { return r.likelihoods.non_ground; }));
+  summary.peak_rss_mb = peakResidentMegabytes();
+  summary.threads = threadCount(options.alignment.threads);
+  if (!reference_lidar.empty()) {
+    const Eigen::Isometry3d T_lidar_base = options.T_base_lidar.inverse();
+    std::vector<StampedPose> reference, estimate;
+    for (std::size_t i = 0; i < run.results.size(); ++i) {
+      const auto scan = static_cast<std::size_t>(run.scans[i]);
+      reference.push_back({stamps_s.at(scan), reference_lidar.at(scan) * T_lidar_base});
+      estimate.push_back({run.results[i].stamp_s, run.results[i].T_map_base});
+    }
+    summary.metrics = evaluateTrajectory(reference, estimate, skip_s);
+  }
+  return summary;
+}
+
+std::string toJsonText(const LocalizationSummary& summary) { return toJson(summary).dump(2) + "\n"; }
+
+void writeLocalization(const std::filesystem::path& folder, const SequenceLocalization& run,
+                       const LocalizationSummary& summary, const Eigen::Isometry3d& T_base_lidar,
+                       const Eigen::Isometry3d& T_camera_lidar) {
+  std::vector<StampedPose> base_poses;
+  std::vector<Eigen::Isometry3d> camera_poses;
+  for (const LocalizationResult& result : run.results) {
+    base_poses.push_back({result.stamp_s, result.T_map_base});
+    camera_poses.push_back(cameraPose(result.T_map_base * T_base_lidar, T_camera_lidar));
+  }
+  const StagedOutput staged(folder);
+  writeTumTrajectory(staged.folder() / "trajectory_tum.txt", base_poses);
+  writeKittiTrajectory(staged.folder() / "trajectory_kitti.txt", camera_poses);
+  writeFrames(staged.folder() / "frames.csv", run);
+  AtomicOutput output(staged.folder() / "summary.json");
+  output.stream() << toJsonText(summary);
+  output.commit();
+  staged.commit();
+}
+
+}  // namespace saw_ndt

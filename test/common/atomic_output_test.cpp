@@ -1,0 +1,84 @@
+#include "common/atomic_output.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+#include "saw_ndt/common/error.h"
+#include "temporary_folder.h"
+
+namespace saw_ndt {
+namespace {
+
+std::string contentOf(const std::filesystem::path& path) {
+  std::ostringstream content;
+  content << std::ifstream(path).rdbuf();
+  return content.str();
+}
+
+TEST(AtomicOutput, AppearsWholeOnCommit) {
+  const TemporaryFolder folder;
+  const auto target = folder.write("out.txt", "old");
+  AtomicOutput output(target);
+  output.stream() << "new " << 1234567 << '\n';
+  output.stream().flush();
+  EXPECT_EQ(contentOf(target), "old");
+  output.commit();
+  EXPECT_EQ(contentOf(target), "new 1234567\n");
+  EXPECT_EQ(folder.entryCount(), 1U);
+}
+
+TEST(AtomicOutput, LeavesNothingWithoutCommit) {
+  const TemporaryFolder folder;
+  { AtomicOutput(folder.path() / "out.txt").stream() << "lost"; }
+  EXPECT_EQ(folder.entryCount(), 0U);
+}
+
+TEST(AtomicOutput, ReplacesWhatASymbolicLinkPointsTo) {
+  const TemporaryFolder folder;
+  const auto target = folder.write("real.txt", "old");
+  const auto link = folder.path() / "link.txt";
+  std::filesystem::create_symlink("real.txt", link);
+  AtomicOutput output(link);
+  output.stream() << "new";
+  output.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(contentOf(target), "new");
+}
+
+TEST(AtomicOutput, NamesTargetAndReasonOfFailure) {
+  const TemporaryFolder folder;
+  const auto missing = folder.path() / "missing" / "out.txt";
+  expectThrows<Error>([&] { AtomicOutput output(missing); }, {missing.string(), "No such file or directory"});
+  expectThrows<Error>([&] { AtomicOutput output(folder.path()); }, {folder.path().string(), "Is a directory"});
+  expectThrows<Error>([&] { AtomicOutput output("/dev/null"); }, {"/dev/null", "no regular file"});
+}
+
+TEST(AtomicOutput, ReportsAFailedWriteAndKeepsTheOldFile) {
+  const TemporaryFolder folder;
+  const auto target = folder.write("out.txt", "old");
+  rlimit old_limit{};
+  getrlimit(RLIMIT_FSIZE, &old_limit);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit = old_limit;
+  limit.rlim_cur = 1 << 16;
+  setrlimit(RLIMIT_FSIZE, &limit);
+  expectThrows<Error>(
+      [&] {
+        AtomicOutput output(target);
+        output.stream() << std::string(1 << 20, 'x');
+        errno = 0;
+        output.commit();
+      },
+      {target.string(), "File too large"});
+  setrlimit(RLIMIT_FSIZE, &old_limit);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(contentOf(target), "old");
+  EXPECT_EQ(folder.entryCount(), 1U);
+}
+
+}  // namespace
+}  // namespace saw_ndt

@@ -1,0 +1,81 @@
+#include "saw_ndt/drives/drive_map.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "map_fixtures.h"
+#include "real_data.h"
+#include "saw_ndt/common/error.h"
+#include "temporary_folder.h"
+
+namespace saw_ndt {
+namespace {
+
+class SequenceMap : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
+  }
+
+  std::string savedBytes(const std::vector<int>& scans, const SequenceMapOptions& options) const {
+    const KittiSequence sequence(realDataFolder() / "kitti" / "sequences" / "drive_0005");
+    const std::string path = (folder.path() / "a.map").string();
+    buildSequenceMap(sequence, scans, options).build().save(path);
+    return contentOf(path);
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(SequenceMap, ThreadsAndTheOrderOfScansDoNotChangeABit) {
+  SequenceMapOptions options;
+  options.threads = 1;
+  const std::string expected = savedBytes({0, 2, 4, 6}, options);
+  EXPECT_GT(expected.size(), 100000U);
+  options.threads = 2;
+  EXPECT_TRUE(savedBytes({0, 2, 4, 6}, options) == expected);
+  EXPECT_TRUE(savedBytes({4, 0, 6, 2}, options) == expected);
+  options.segmentation.reset();
+  const std::string raw = savedBytes({6, 4, 2, 0}, options);
+  EXPECT_TRUE(raw != expected);
+  options.threads = 4;
+  EXPECT_TRUE(savedBytes({0, 2, 4, 6}, options) == raw);
+}
+
+TEST_F(SequenceMap, CountsScansAndReportsThem) {
+  const KittiSequence sequence(realDataFolder() / "kitti" / "sequences" / "00");
+  SequenceMapOptions options;
+  options.resolution_m = 2.0;
+  std::atomic<int> done{0};
+  const WeightedVoxelMap map = buildSequenceMap(sequence, {1, 3, 5}, options, [&] { ++done; }).build();
+  EXPECT_EQ(done, 3);
+  EXPECT_EQ(map.origin().scan_count, 3U);
+  EXPECT_TRUE(map.labelled());
+  EXPECT_EQ(map.resolution(), 2.0);
+  EXPECT_GT(map.fine().size(), 500U);
+}
+
+TEST(SequenceMapErrors, TheFirstBadScanIsNamed) {
+  const TemporaryFolder folder;
+  const std::string four_points(64, '\0');
+  for (const int scan : {0, 1, 2, 3, 4}) {
+    const bool bad = scan == 1 || scan == 3;
+    folder.write("velodyne/00000" + std::to_string(scan) + ".bin", bad ? "short" : four_points);
+  }
+  std::string poses;
+  for (int scan = 0; scan < 5; ++scan) poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  folder.write("poses.txt", poses);
+  folder.write("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
+  const KittiSequence sequence(folder.path());
+  for (const int threads : {1, 2, 4}) {
+    SequenceMapOptions options;
+    options.threads = threads;
+    expectThrows<Error>([&] { buildSequenceMap(sequence, {0, 1, 2, 3, 4}, options); }, {"000001.bin"});
+    expectThrows<Error>([&] { buildSequenceMap(sequence, {4, 3, 2, 1, 0}, options); }, {"000003.bin"});
+    EXPECT_EQ(buildSequenceMap(sequence, {0, 2, 4}, options).build().origin().point_count, 12U);
+  }
+}
+
+}  // namespace
+}  // namespace saw_ndt
