@@ -3,6 +3,7 @@
 #include "app_options.h"
 #include "progress_bar.h"
 #include "common/atomic_output.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "segmentation_options.h"
@@ -20,7 +21,7 @@ constexpr char kDescription[] =
 int main(int argc, char** argv) {
   std::string sequence_folder, map_file, poses_file, scans = ":";
   bool classical = false;
-  saw_ndt::SequenceMapOptions options;
+  saw_ndt::DriveMapOptions options;
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::AppOptions app("saw_ndt_build_map", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt");
@@ -46,7 +47,7 @@ int main(int argc, char** argv) {
 
     saw_ndt::ProgressBar progress(selected.size());
     const saw_ndt::WeightedVoxelMap map =
-        saw_ndt::buildSequenceMap(sequence, selected, options, [&] { progress.step(); }).build({}, options.threads);
+        saw_ndt::buildDriveMap(*sequence.scans(selected), options, [&] { progress.step(); }).build({}, options.threads);
     map.save(map_file);
     std::cout << map_file << ": " << map.fine().size() << " voxels of " << map.resolution() << " m from "
               << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";

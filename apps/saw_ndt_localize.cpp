@@ -4,8 +4,9 @@
 #include "output_folder.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/common/error.h"
-#include "report/sequence_localization.h"
+#include "report/localization_summary.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "segmentation_options.h"
 
@@ -74,30 +75,25 @@ int main(int argc, char** argv) {
     const saw_ndt::KittiSequence sequence(sequence_folder, poses_file);
     const std::vector<int> selected =
         saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, sequence.scanCount()); });
-    const std::vector<double> stamps_s = sequence.stamps();
-    std::vector<Eigen::Isometry3d> reference_lidar;
-    if (sequence.hasPoses()) reference_lidar = sequence.posesLidar();
-    if (reference_lidar.empty() && !app.isGiven("initial-pose")) {
+    sequence.stamps();
+    if (!sequence.hasPoses() && !app.isGiven("initial-pose")) {
       throw saw_ndt::UsageError(sequence_folder + ": no reference poses: option -initial-pose is needed");
     }
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
     saw_ndt::Localizer localizer(loadMap(map_file, options.method, app.threads()), options);
     localizer.setInitialPose(app.isGiven("initial-pose") ? saw_ndt::transformOf(initial_pose)
-                                                         : reference_lidar[static_cast<std::size_t>(selected.front())] *
+                                                         : sequence.posesLidar()[static_cast<std::size_t>(selected.front())] *
                                                                options.T_base_lidar.inverse());
-
-    if (!reference_lidar.empty() && !saw_ndt::anyScanAfterSkip(selected, stamps_s, skip_s)) {
-      std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
-      reference_lidar.clear();
-    }
 
     saw_ndt::OutputFolder folder(out_dir);
     saw_ndt::ProgressBar progress(selected.size());
-    const saw_ndt::SequenceLocalization run =
-        saw_ndt::localizeSequence(localizer, sequence, selected, [&] { progress.step(); });
-    const saw_ndt::LocalizationSummary summary =
-        saw_ndt::summarize(run, localizer.options(), reference_lidar, stamps_s, skip_s);
+    const std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
+    const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *source, [&] { progress.step(); });
+    const saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
+    if (sequence.hasPoses() && !summary.metrics) {
+      std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
+    }
     saw_ndt::writeLocalization(folder.path(), run, summary, options.T_base_lidar, T_camera_lidar);
     folder.keep();
     std::cout << saw_ndt::toJsonText(summary);

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "saw_ndt/common/error.h"
-#include "report/pcl_ndt_localizer.h"
+#include "report/pcl_ndt.h"
 #include "saw_ndt/localization/localizer.h"
 #include "localization/source_voxel_filter.h"
 #include "saw_ndt/drives/drive_map.h"
@@ -127,33 +127,33 @@ int benchmarkScanNumber() {
   return std::min(scan_count / 2 | 1, scan_count - 1);
 }
 
-const pcl::PointCloud<pcl::PointXYZI>& benchmarkScan() {
-  static const pcl::PointCloud<pcl::PointXYZI> scan = benchmarkSequence().readScan(benchmarkScanNumber());
+const std::vector<LidarPoint>& benchmarkScan() {
+  static const std::vector<LidarPoint> scan = benchmarkSequence().readScan(benchmarkScanNumber());
   return scan;
 }
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkScanPoints() {
   auto points = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  for (const pcl::PointXYZI& point : benchmarkScan()) points->emplace_back(point.x, point.y, point.z);
+  for (const LidarPoint& point : benchmarkScan()) points->emplace_back(point.x, point.y, point.z);
   return points;
 }
 
 const Eigen::Isometry3d& benchmarkPose() { return benchmarkPoses()[static_cast<std::size_t>(benchmarkScanNumber())]; }
 
 const WeightedVoxelMap& benchmarkMap() {
-  static const WeightedVoxelMap map = buildSequenceMap(benchmarkSequence(), benchmarkMapScans(), {}).build();
+  static const WeightedVoxelMap map = buildDriveMap(*benchmarkSequence().scans(benchmarkMapScans()), {}).build();
   return map;
 }
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkTarget(std::size_t most) {
-  static const pcl::PointCloud<pcl::PointXYZ>::Ptr all = mapPoints(benchmarkSequence(), benchmarkMapScans());
+  static const pcl::PointCloud<pcl::PointXYZ>::Ptr all = mapPoints(*benchmarkSequence().scans(benchmarkMapScans()));
   if (most >= all->size()) return all;
   auto first = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   for (std::size_t i = 0; i < most; ++i) first->push_back((*all)[i]);
   return first;
 }
 
-SourcePoints benchmarkSource(const pcl::PointCloud<pcl::PointXYZI>& scan, const LocalizationMethod& method) {
+SourcePoints benchmarkSource(const std::vector<LidarPoint>& scan, const LocalizationMethod& method) {
   const ScanView view = viewOf(scan);
   std::vector<StructuralLabel> labels(scan.size(), StructuralLabel::NonGround);
   if (method.segment) ScanSegmenter().segment(view, labels);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/localization/localization_method.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
 #include "saw_ndt/registration/source_points.h"
@@ -32,7 +32,7 @@ const std::vector<int>& benchmarkMapScans();
 /// The scan that is benchmarked: the odd one in the middle of them, which the map does not hold.
 int benchmarkScanNumber();
 /// That scan (LiDAR frame).
-const pcl::PointCloud<pcl::PointXYZI>& benchmarkScan();
+const std::vector<LidarPoint>& benchmarkScan();
 /// The same as PCL's registration takes it.
 pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkScanPoints();
 /// Its reference pose, T_map_lidar.
@@ -44,6 +44,6 @@ constexpr std::size_t kWholeTarget = std::numeric_limits<std::size_t>::max();
 /// The points of benchmarkMapScans() in the map frame, the first `most` of them.
 pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkTarget(std::size_t most);
 /// What a Localizer of this method registers of a scan (LiDAR frame): labelled, ground thinned, 0.2 m source voxels.
-SourcePoints benchmarkSource(const pcl::PointCloud<pcl::PointXYZI>& scan, const LocalizationMethod& method);
+SourcePoints benchmarkSource(const std::vector<LidarPoint>& scan, const LocalizationMethod& method);
 
 }  // namespace saw_ndt

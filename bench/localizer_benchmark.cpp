@@ -3,7 +3,7 @@
 
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
-#include "pcl_ndt.h"
+#include "report/pcl_ndt.h"
 #include "perturbed_starts.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/pcl/cloud_view.h"
@@ -54,7 +54,7 @@ void localizeByPcl(benchmark::State& state) {
     for (int k = 0; k < saw_ndt::kPerturbedStartCount; ++k) {
       const PclNdt::Cloud::Ptr source = PclNdt::thinned(scan);
       ndt.setSource(source);
-      iterations += ndt.align(saw_ndt::perturbedStart(saw_ndt::benchmarkPose(), k));
+      iterations += ndt.align(saw_ndt::perturbedStart(saw_ndt::benchmarkPose(), k)).iterations;
       source_points = source->size();
     }
   }

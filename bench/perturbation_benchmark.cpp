@@ -1,27 +1,25 @@
 // Aligns real scans from perturbed starts and prints how far, how fast and how repeatably each method comes back to the
 // reference pose, pcl::NormalDistributionsTransform beside ours.
 
-#include <pcl/filters/voxel_grid.h>
-#include <pcl/registration/ndt.h>
-
-#include <chrono>
 #include <functional>
 #include <iomanip>
 #include <iostream>
 
 #include "app_options.h"
+#include "common/stopwatch.h"
 #include "perturbed_starts.h"
 #include "progress_bar.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/common/geometry.h"
 #include "evaluation/statistics.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/drives/drive_map.h"
-#include "saw_ndt/pcl/cloud_view.h"
+#include "report/pcl_ndt.h"
 
 namespace {
 
-using Cloud = pcl::PointCloud<pcl::PointXYZI>;
+using Scan = std::vector<saw_ndt::LidarPoint>;
 
 constexpr double kSuccess_m = 0.1;
 constexpr double kSuccess_deg = 0.2;
@@ -33,7 +31,7 @@ struct Alignment {
 };
 
 // Aligns one scan from one start.
-using Method = std::function<Alignment(const Cloud& scan, const Eigen::Isometry3d& T_start)>;
+using Method = std::function<Alignment(const Scan& scan, const Eigen::Isometry3d& T_start)>;
 
 Method ourMethod(const std::string& name, const saw_ndt::WeightedVoxelMap& map, int threads) {
   saw_ndt::LocalizerOptions options;
@@ -41,31 +39,22 @@ Method ourMethod(const std::string& name, const saw_ndt::WeightedVoxelMap& map, 
   options.alignment.threads = threads;
   auto localizer = std::make_shared<saw_ndt::Localizer>(
       std::make_shared<const saw_ndt::WeightedVoxelMap>(map.reweighted(options.method.voxels)), options);
-  return [localizer](const Cloud& scan, const Eigen::Isometry3d& T_start) {
+  return [localizer](const Scan& scan, const Eigen::Isometry3d& T_start) {
     localizer->setInitialPose(T_start);
     const saw_ndt::LocalizationResult result = localizer->localize(saw_ndt::viewOf(scan), 0.0);
     return Alignment{result.alignment.T_map_source, result.times.align_ms, result.alignment.evaluations};
   };
 }
 
-Method pclMethod(const Cloud::ConstPtr& target) {
-  auto ndt = std::make_shared<pcl::NormalDistributionsTransform<pcl::PointXYZI, pcl::PointXYZI>>();
-  ndt->setTransformationEpsilon(1e-4);
-  ndt->setInputTarget(target);
-  return [ndt](const Cloud& scan, const Eigen::Isometry3d& T_start) {
-    auto source = pcl::make_shared<Cloud>();
-    pcl::VoxelGrid<pcl::PointXYZI> filter;
-    filter.setLeafSize(0.2f, 0.2f, 0.2f);
-    filter.setInputCloud(pcl::make_shared<Cloud>(scan));
-    filter.filter(*source);
-    ndt->setInputSource(source);
-    Cloud aligned;
-    const auto start = std::chrono::steady_clock::now();
-    ndt->align(aligned, T_start.matrix().cast<float>());
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    Eigen::Isometry3d T;
-    T.matrix() = ndt->getFinalTransformation().cast<double>();
-    return Alignment{saw_ndt::normalizedRotation(T), elapsed.count(), 0};
+Method pclMethod(const saw_ndt::PclNdt::Cloud::ConstPtr& target) {
+  auto ndt = std::make_shared<saw_ndt::PclNdt>(target);
+  return [ndt](const Scan& scan, const Eigen::Isometry3d& T_start) {
+    const auto raw = pcl::make_shared<saw_ndt::PclNdt::Cloud>();
+    for (const saw_ndt::LidarPoint& point : scan) raw->emplace_back(point.x, point.y, point.z);
+    ndt->setSource(saw_ndt::PclNdt::thinned(raw));
+    const saw_ndt::internal::Stopwatch stopwatch;
+    const saw_ndt::AlignmentResult result = ndt->align(T_start);
+    return Alignment{result.T_map_source, stopwatch.milliseconds(), 0};
   };
 }
 
@@ -74,7 +63,7 @@ struct Figures {
   int successes = 0;
 };
 
-void measure(const Method& method, const Cloud& scan, const Eigen::Isometry3d& T_reference, Figures& figures) {
+void measure(const Method& method, const Scan& scan, const Eigen::Isometry3d& T_reference, Figures& figures) {
   std::vector<Eigen::Vector3d> positions;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (int k = 0; k < saw_ndt::kPerturbedStartCount; ++k) {
@@ -130,28 +119,21 @@ int main(int argc, char** argv) {
     const std::vector<Eigen::Isometry3d> reference = sequence.posesLidar();
     const std::vector<int> mapped = saw_ndt::parseScanSelection(map_scans, sequence.scanCount());
     const std::vector<int> aligned = saw_ndt::parseScanSelection(scans, sequence.scanCount());
-    const saw_ndt::WeightedVoxelMap map = saw_ndt::buildSequenceMap(sequence, mapped, {}).build();
+    const saw_ndt::WeightedVoxelMap map = saw_ndt::buildDriveMap(*sequence.scans(mapped), {}).build();
 
     std::vector<std::pair<std::string, Method>> methods;
     for (const std::string& name : saw_ndt::LocalizationMethod::names()) {
       methods.emplace_back(name, ourMethod(name, map, app.threads()));
     }
     if (!without_pcl) {
-      auto target = pcl::make_shared<Cloud>();
-      for (const int scan : mapped) {
-        for (pcl::PointXYZI point : sequence.readScan(scan)) {
-          point.getVector3fMap() =
-              (reference[static_cast<std::size_t>(scan)] * point.getVector3fMap().cast<double>()).cast<float>();
-          target->push_back(point);
-        }
-      }
+      const auto target = saw_ndt::mapPoints(*sequence.scans(mapped));
       methods.emplace_back("pcl::NormalDistributionsTransform", pclMethod(target));
     }
 
     std::vector<Figures> figures(methods.size());
     saw_ndt::ProgressBar progress(aligned.size() * methods.size());
     for (const int scan : aligned) {
-      const Cloud cloud = sequence.readScan(scan);
+      const Scan cloud = sequence.readScan(scan);
       // Methods take turns scan by scan, so that a slow minute of the machine hits all of them.
       for (std::size_t m = 0; m < methods.size(); ++m) {
         measure(methods[m].second, cloud, reference[static_cast<std::size_t>(scan)], figures[m]);

@@ -3,7 +3,7 @@
 
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
-#include "pcl_ndt.h"
+#include "report/pcl_ndt.h"
 #include "perturbed_starts.h"
 #include "registration_case.h"
 #include "repeated_evaluation.h"

@@ -11,7 +11,7 @@
 #include "progress_bar.h"
 #include "report/scan_statistics.h"
 #include "evaluation/statistics.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "segmentation_options.h"

@@ -2,6 +2,8 @@
 
 #include <Eigen/SVD>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace saw_ndt {
 
@@ -23,6 +25,12 @@ Eigen::Isometry3d normalizedRotation(const Eigen::Isometry3d& T) {
   Eigen::Isometry3d normalized = T;
   normalized.linear() = u * svd.matrixV().transpose();
   return normalized;
+}
+
+void requireRigid(const Eigen::Isometry3d& T, const char* name) {
+  const Eigen::Matrix3d R = T.linear();
+  if (T.matrix().allFinite() && R.isUnitary(1e-6) && R.determinant() > 0.0) return;
+  throw std::invalid_argument(std::string(name) + ": must be a finite rigid transform");
 }
 
 Eigen::Matrix3d rotationFromVector(const Eigen::Vector3d& rotation_vector) {

@@ -1,6 +1,6 @@
 #include "saw_ndt/io/point_cloud_file.h"
 
-#include <pcl/common/io.h>
+#include <pcl/common/point_tests.h>
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
 #include <pcl/io/pcd_io.h>
@@ -79,7 +79,11 @@ pcl::PointCloud<PointT> readPointCloud(const std::filesystem::path& path) {
     throw Error(path.string(), "", "a KITTI scan holds no labels");
   } else {
     pcl::PointCloud<PointT> cloud;
-    pcl::copyPointCloud(readKittiScan(path), cloud);
+    for (const LidarPoint& point : readKittiScan(path)) {
+      PointT& added = cloud.emplace_back(point.x, point.y, point.z);
+      if constexpr (std::is_same_v<PointT, pcl::PointXYZI>) added.intensity = point.intensity;
+      cloud.is_dense = cloud.is_dense && pcl::isFinite(added);
+    }
     return cloud;
   }
 }

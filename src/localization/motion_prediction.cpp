@@ -14,11 +14,19 @@ Eigen::Vector3d bounded(const Eigen::Vector3d& vector, double limit) {
   return length > limit ? Eigen::Vector3d(vector * (limit / length)) : vector;
 }
 
-void requireFinite(const Eigen::Isometry3d& T_map_base) {
-  if (!T_map_base.matrix().allFinite()) throw std::invalid_argument("T_map_base: must be finite");
-}
-
 }  // namespace
+
+const char* toString(TrackStatus status) {
+  switch (status) {
+    case TrackStatus::NOT_INITIALIZED:
+      return "not initialized";
+    case TrackStatus::TRACKING:
+      return "tracking";
+    case TrackStatus::COASTING:
+      return "coasting";
+  }
+  return "unknown";
+}
 
 void MotionPredictionOptions::check() const {
   checkOption(max_speed_mps > 0.0 && std::isfinite(max_speed_mps), "max_speed_mps", max_speed_mps, "positive");
@@ -29,42 +37,49 @@ void MotionPredictionOptions::check() const {
 MotionPrediction::MotionPrediction(const MotionPredictionOptions& options) : options_(options) { options_.check(); }
 
 void MotionPrediction::reset(const Eigen::Isometry3d& T_map_base) {
-  requireFinite(T_map_base);
-  T_map_last_ = T_map_base;
-  last_stamp_s_.reset();
-  velocity_known_ = false;
+  requireRigid(T_map_base, "T_map_base");
+  state_ = TrackState();
+  state_.status = TrackStatus::TRACKING;
+  state_.T_map_base = T_map_base;
 }
 
 void MotionPrediction::accept(const Eigen::Isometry3d& T_map_base, double stamp_s) {
-  requireFinite(T_map_base);
+  requireRigid(T_map_base, "T_map_base");
   checkOption(std::isfinite(stamp_s), "stamp_s", stamp_s, "finite");
-  const double elapsed_s = last_stamp_s_ ? stamp_s - *last_stamp_s_ : 0.0;
-  velocity_known_ = elapsed_s > 0.0;
-  if (velocity_known_) {
-    const Eigen::Isometry3d T_last_now = T_map_last_.inverse() * T_map_base;
+  TrackState next;
+  next.status = TrackStatus::TRACKING;
+  next.T_map_base = T_map_base;
+  next.stamp_s = stamp_s;
+  const double elapsed_s = state_.timeSinceLast(stamp_s).value_or(0.0);
+  next.velocity_known = elapsed_s > 0.0;
+  if (next.velocity_known) {
+    const Eigen::Isometry3d T_last_now = state_.T_map_base.inverse() * T_map_base;
     const Eigen::Vector3d turned = rotationVector(T_last_now.linear());
     const Eigen::Vector3d driven = meanRotation(turned).inverse() * T_last_now.translation();
-    velocity_base_mps_ = bounded(driven / elapsed_s, options_.max_speed_mps);
-    turn_rate_base_radps_ = bounded(turned / elapsed_s, options_.max_turn_rate_radps);
+    next.velocity_base_mps = bounded(driven / elapsed_s, options_.max_speed_mps);
+    next.turn_rate_base_radps = bounded(turned / elapsed_s, options_.max_turn_rate_radps);
   }
-  T_map_last_ = T_map_base;
-  last_stamp_s_ = stamp_s;
+  state_ = next;
+}
+
+void MotionPrediction::reject() {
+  if (state_.status == TrackStatus::NOT_INITIALIZED) return;
+  state_.status = TrackStatus::COASTING;
+  ++state_.rejected_scans;
 }
 
 Eigen::Isometry3d MotionPrediction::predict(double stamp_s) const {
   checkOption(std::isfinite(stamp_s), "stamp_s", stamp_s, "finite");
-  const double elapsed_s = timeSinceLast(stamp_s).value_or(0.0);
-  if (!velocity_known_ || elapsed_s <= 0.0) return T_map_last_;
+  if (state_.status == TrackStatus::NOT_INITIALIZED) {
+    throw std::logic_error("no initial pose: setInitialPose() has not been called");
+  }
+  const double elapsed_s = state_.timeSinceLast(stamp_s).value_or(0.0);
+  if (!state_.velocity_known || elapsed_s <= 0.0) return state_.T_map_base;
   Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();
-  const Eigen::Vector3d turned = turn_rate_base_radps_ * elapsed_s;
-  T_last_next.translation() = meanRotation(turned) * velocity_base_mps_ * elapsed_s;
+  const Eigen::Vector3d turned = state_.turn_rate_base_radps * elapsed_s;
+  T_last_next.translation() = meanRotation(turned) * state_.velocity_base_mps * elapsed_s;
   T_last_next.linear() = rotationFromVector(turned);
-  return normalizedRotation(T_map_last_ * T_last_next);
-}
-
-std::optional<double> MotionPrediction::timeSinceLast(double stamp_s) const {
-  if (!last_stamp_s_) return std::nullopt;
-  return stamp_s - *last_stamp_s_;
+  return normalizedRotation(state_.T_map_base * T_last_next);
 }
 
 }  // namespace saw_ndt

@@ -6,17 +6,10 @@
 #include "map/ndt_level.h"
 #include "registration/ndt_derivatives.h"
 #include "registration/score_function.h"
+#include "saw_ndt/registration/alignment.h"
 #include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {
-
-/// The voxels that a source point is paired with.
-enum class NeighborhoodSearchMethod {
-  RADIUS,    ///< every voxel whose mean lies within one resolution of the point, as PCL
-  DIRECT26,  ///< the point's own voxel and the 26 around it
-  DIRECT7,   ///< the point's own voxel and the 6 that share a face with it
-  DIRECT1,   ///< the point's own voxel
-};
 
 /// W_ij of eq. (1) of the paper, or 1 for every pair.
 struct PairWeighting {

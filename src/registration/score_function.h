@@ -1,12 +1,8 @@
 #pragma once
 
-namespace saw_ndt {
+#include "saw_ndt/registration/alignment.h"
 
-/// The function of the squared Mahalanobis distance m that a source-voxel pair scores: amplitude * exp(-d2 / 2 * m).
-enum class ScoreFunction {
-  Magnusson,  ///< eq. 6.8 to 6.10 of Magnusson (2009): a normal distribution mixed with uniform outliers, as PCL
-  Paper,      ///< eq. (2) of the weighted NDT paper: amplitude 1, d2 = 1
-};
+namespace saw_ndt {
 
 struct ScoreParameters {
   double amplitude = 1.0;  ///< -d1 of Magnusson, positive

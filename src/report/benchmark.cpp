@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "saw_ndt/common/error.h"
-#include "report/pcl_ndt_localizer.h"
+#include "report/pcl_ndt.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/drives/drive_map.h"
 
@@ -34,9 +34,8 @@ class MapReadings {
   std::vector<std::shared_ptr<const WeightedVoxelMap>> readings_;
 };
 
-/// A localizer of ours or PCL's, at its initial pose.
-template <typename AnyLocalizer>
-ScanLocalizer startedAt(const Eigen::Isometry3d& T_map_base, std::shared_ptr<AnyLocalizer> localizer) {
+/// A localizer at its initial pose.
+ScanLocalizer startedAt(const Eigen::Isometry3d& T_map_base, std::shared_ptr<Localizer> localizer) {
   localizer->setInitialPose(T_map_base);
   return [localizer](const ScanView& scan, double stamp_s) { return localizer->localize(scan, stamp_s); };
 }
@@ -48,6 +47,7 @@ LocalizerOptions optionsOf(const std::string& method, LocalizerOptions options) 
   }
   options.method = LocalizationMethod::named("classical");
   options.method.name = kPclNdtMethod;
+  options.acceptance.min_likelihood = 0.0;
   return options;
 }
 
@@ -57,6 +57,12 @@ void requireDifferent(const std::vector<Value>& values, const char* name) {
   if (std::set<Value>(values.begin(), values.end()).size() != values.size()) {
     throw std::invalid_argument(std::string(name) + ": one is given twice");
   }
+}
+
+std::vector<double> stampsOf(const KittiSequence& sequence, const std::vector<int>& scans) {
+  std::vector<double> stamps_s;
+  for (const int scan : scans) stamps_s.push_back(sequence.stamps()[static_cast<std::size_t>(scan)]);
+  return stamps_s;
 }
 
 void begin(const BenchmarkProgress& progress, const std::string& description, std::size_t steps) {
@@ -97,9 +103,8 @@ Benchmark::Benchmark(std::vector<BenchmarkDrive> drives, BenchmarkOptions option
   requireDifferent(names, "names of the drives");
   for (const BenchmarkDrive& drive : drives_) {
     const std::vector<int> scans = parseScanSelection(options_.scans, drive.sequence.scanCount());
-    const std::vector<double> stamps_s = drive.sequence.stamps();
     drive.sequence.posesLidar();
-    if (!anyScanAfterSkip(scans, stamps_s, options_.skip_s)) {
+    if (!anyScanAfterSkip(stampsOf(drive.sequence, scans), options_.skip_s)) {
       std::ostringstream message;
       message << "skip_s = " << options_.skip_s << ": " << drive.sequence.folder().string()
               << " has no scan left after so many seconds: lower -skip, to 0 for a short drive";
@@ -134,7 +139,7 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
   const KittiSequence& source = map_drive == MapDrive::SAME ? drive.sequence : *drive.other;
   const std::vector<int> map_scans = parseScanSelection(options_.map_scans, source.scanCount());
   const std::vector<int> scans = parseScanSelection(options_.scans, drive.sequence.scanCount());
-  const std::vector<Eigen::Isometry3d> reference_lidar = drive.sequence.posesLidar();
+  const std::vector<Eigen::Isometry3d>& reference_lidar = drive.sequence.posesLidar();
   const LocalizerOptions& common = options_.localizer;
   const std::string prefix = drive.sequence.name() + ", " + toString(map_drive) + ": ";
 
@@ -151,11 +156,11 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
   }
 
   begin(progress, prefix + "building the map from " + std::to_string(map_scans.size()) + " scans", map_scans.size());
-  SequenceMapOptions map_options;
+  DriveMapOptions map_options;
   map_options.resolution_m = options_.resolution_m;
   map_options.segmentation = common.segmentation;
   map_options.threads = common.alignment.threads;
-  MapReadings maps(buildSequenceMap(source, map_scans, map_options, progress.step_done).build());
+  MapReadings maps(buildDriveMap(*source.scans(map_scans), map_options, progress.step_done).build());
   result.voxels = voxelCloud(maps.map());
 
   std::vector<ScanLocalizer> localizers;
@@ -165,9 +170,9 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
     if (method == kPclNdtMethod) {
       begin(progress, prefix + "giving PCL the points of " + std::to_string(map_scans.size()) + " scans",
             map_scans.size());
-      localizers.push_back(startedAt(result.T_map_base.front(),
-                                     std::make_shared<PclNdtLocalizer>(mapPoints(source, map_scans, progress.step_done),
-                                                                       options_.resolution_m, map, options)));
+      SourceAligner pcl =
+          pclNdtAligner(mapPoints(*source.scans(map_scans), progress.step_done), options_.resolution_m, map);
+      localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(std::move(pcl), options)));
     } else {
       localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(map, options)));
     }
@@ -178,13 +183,12 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
         prefix + "localizing " + std::to_string(scans.size()) + " scans by " + std::to_string(localizers.size()) +
             (localizers.size() == 1 ? " method" : " methods"),
         turns);
-  std::vector<SequenceLocalization> runs = localizeByTurns(localizers, drive.sequence, scans, progress.step_done);
+  std::vector<DriveLocalization> runs = localizeByTurns(localizers, *drive.sequence.scans(scans), progress.step_done);
   for (std::size_t m = 0; m < runs.size(); ++m) {
     const std::string& method = options_.methods[m];
     LocalizerOptions options = optionsOf(method, common);
     if (method == kPclNdtMethod) options.alignment.threads = 1;
-    LocalizationSummary summary =
-        summarize(runs[m], options, reference_lidar, drive.sequence.stamps(), options_.skip_s);
+    LocalizationSummary summary = summarize(runs[m], options, options_.skip_s);
     result.cells.push_back({method, std::move(runs[m]), std::move(summary)});
   }
   return result;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "report/sequence_localization.h"
+#include "report/localization_summary.h"
 #include "report/voxel_cloud.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 
 namespace saw_ndt {
 
@@ -23,7 +23,7 @@ const char* toString(MapDrive drive);
 /// "same", "other": for file names and tables of data
 const char* shortName(MapDrive drive);
 
-/// The method that is pcl::NormalDistributionsTransform itself; see PclNdtLocalizer.
+/// The method that is pcl::NormalDistributionsTransform itself; see PclNdt.
 constexpr char kPclNdtMethod[] = "pcl-ndt";
 /// The methods that a benchmark knows: those of LocalizationMethod and kPclNdtMethod.
 std::vector<std::string> benchmarkMethodNames();
@@ -51,7 +51,7 @@ struct BenchmarkDrive {
 /// One method on one drive in one map.
 struct BenchmarkCell {
   std::string method;
-  SequenceLocalization run;
+  DriveLocalization run;
   LocalizationSummary summary;  ///< with metrics
 };
 

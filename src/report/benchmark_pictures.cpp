@@ -237,7 +237,7 @@ std::vector<GnuplotPicture> benchmarkPictures(const BenchmarkRun& run) {
     position.values.push_back(errors.position_error_m);
     yaw.values.push_back(errors.yaw_error_deg);
     std::vector<double>& values = likelihood.values.emplace_back();
-    for (const LocalizationResult& result : cell.run.results) values.push_back(result.likelihoods.unweighted);
+    for (const LocalizationResult& result : cell.run.results) values.push_back(result.alignment.likelihoods.unweighted);
     position.notes.push_back("ATE " + fixed(cell.summary.metrics->ate_rmse_m, 4) + " m");
     yaw.notes.push_back("mean " + fixed(cell.summary.metrics->yaw_mae_deg, 4) + " deg");
     likelihood.notes.push_back(std::to_string(cell.summary.rejected) + " of " + std::to_string(cell.summary.scans) +

@@ -4,7 +4,7 @@
 
 #include "saw_ndt/evaluation/metrics.h"
 #include "saw_ndt/evaluation/relative_errors.h"
-#include "report/sequence_localization.h"
+#include "report/localization_summary.h"
 #include "evaluation/statistics.h"
 
 // The one public header that needs nlohmann-json; the library's others do without.

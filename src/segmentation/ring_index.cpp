@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
-#include <string>
 
 #include "saw_ndt/common/geometry.h"
 
@@ -65,16 +65,18 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
     }
     if (!rowsRise(scan, points, sensor)) return;
     for (RowRun& run : runs_) run.row = static_cast<std::int16_t>(sensor.rows() - 1 - run.row);
-  } else if (scan.rings != nullptr) {
+  } else if (scan.rings.known()) {
     source_ = VerticalIndexSource::RingField;
     rows_.resize(scan.size);
     for (std::size_t i = 0; i < scan.size; ++i) {
-      if (scan.rings[i] >= sensor.rows()) {
-        throw std::invalid_argument("ring " + std::to_string(scan.rings[i]) + " of point " + std::to_string(i) +
-                                    ": sensor model " + sensor.name + " has " + std::to_string(sensor.rows()) +
-                                    " rows");
+      const double ring = scan.rings[i];
+      if (!(ring >= 0.0 && ring < sensor.rows())) {
+        std::ostringstream message;
+        message << "ring " << ring << " of point " << i << ": sensor model " << sensor.name << " has " << sensor.rows()
+                << " rows";
+        throw std::invalid_argument(message.str());
       }
-      rows_[i] = static_cast<std::int16_t>(scan.rings[i]);
+      rows_[i] = static_cast<std::int16_t>(ring);
     }
     if (!rowsRise(scan, points, sensor)) return;
     for (std::int16_t& row : rows_) row = static_cast<std::int16_t>(sensor.rows() - 1 - row);

@@ -204,7 +204,6 @@ LidarScan LidarSimulator::Parts::scan(const VehicleMotion& motion, int scan) {
                                    returns.semantic_classes.end());
     result.rings.resize(result.points.size(), static_cast<std::uint16_t>(ring));
   }
-  result.points.is_dense = true;
   return result;
 }
 

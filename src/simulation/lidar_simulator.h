@@ -1,12 +1,10 @@
 #pragma once
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "saw_ndt/common/scan_view.h"
 #include "simulation/lidar_options.h"
 #include "simulation/scene.h"
 #include "simulation/vehicle_motion.h"
@@ -16,7 +14,7 @@ namespace saw_ndt {
 /// One turn of a LiDAR. Points come ring after ring, the top ring first, azimuth rising from 0 to 360 degrees within a
 /// ring, as in KITTI's files.
 struct LidarScan {
-  pcl::PointCloud<pcl::PointXYZI> points;       ///< metres, LiDAR frame; intensity: reflectance, 0 to 0.99
+  std::vector<LidarPoint> points;       ///< metres, LiDAR frame; intensity: reflectance, 0 to 0.99
   std::vector<std::uint16_t> semantic_classes;  ///< of SemanticKITTI, one a point
   std::vector<std::uint16_t> rings;             ///< beam of each point, 0 at the top
 };

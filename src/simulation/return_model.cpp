@@ -145,8 +145,8 @@ void ReturnModel::measure(const std::vector<RingHits>& rings, int ring, RandomEn
   returns->points.clear();
   returns->semantic_classes.clear();
   const auto add = [&](std::ptrdiff_t firing, float range_m, float brightness, std::uint16_t semantic_class) {
-    pcl::PointXYZI point;
-    point.getVector3fMap() = own.directions[firing] * range_m;
+    LidarPoint point;
+    positionOf(point) = own.directions[firing] * range_m;
     point.intensity = reflectance(brightness);
     returns->points.push_back(point);
     returns->semantic_classes.push_back(semantic_class);

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <pcl/point_types.h>
-
 #include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
+#include "saw_ndt/common/geometry.h"
 #include "simulation/random_engine.h"
 #include "simulation/lidar_options.h"
 #include "simulation/ray_caster.h"
@@ -21,7 +20,7 @@ struct RingHits {
 
 /// The points of one beam and their SemanticKITTI classes.
 struct RingReturns {
-  std::vector<pcl::PointXYZI> points;
+  std::vector<LidarPoint> points;
   std::vector<std::uint16_t> semantic_classes;
 };
 

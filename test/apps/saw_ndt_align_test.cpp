@@ -8,7 +8,7 @@
 #include "real_data.h"
 #include "run_app_program.h"
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/point_cloud_file.h"
 
 namespace saw_ndt {

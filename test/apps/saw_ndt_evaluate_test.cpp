@@ -4,7 +4,7 @@
 
 #include "real_data.h"
 #include "run_app_program.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/trajectory.h"
 
 namespace saw_ndt {

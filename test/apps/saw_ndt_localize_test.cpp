@@ -4,7 +4,7 @@
 
 #include "drive_files.h"
 #include "real_data.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 
 namespace saw_ndt {
 namespace {

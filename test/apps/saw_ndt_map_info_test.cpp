@@ -8,6 +8,7 @@
 #include "real_data.h"
 #include "run_app_program.h"
 #include "report/voxel_cloud.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/point_cloud_file.h"
 #include "saw_ndt/drives/drive_map.h"
 
@@ -92,7 +93,7 @@ TEST_F(MapInfoApp, SaysWhatIsWrong) {
 TEST_F(MapInfoApp, OfARealMap) {
   if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
   const KittiSequence sequence(realDataFolder() / "kitti" / "sequences" / "01");
-  const WeightedVoxelMap map = buildSequenceMap(sequence, {0, 4}, {}).build();
+  const WeightedVoxelMap map = buildDriveMap(*sequence.scans({0, 4}), {}).build();
   map.save(path("a.map"));
   const AppResult result = run("'" + path("a.map") + "' -json -pcd '" + path("a.pcd") + "'");
   ASSERT_EQ(result.exit_code, 0) << result.errors;

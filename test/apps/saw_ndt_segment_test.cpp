@@ -6,7 +6,7 @@
 #include "real_data.h"
 #include "run_app_program.h"
 #include "report/segmentation_score.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/point_cloud_file.h"
 #include "segmentation/synthetic_scan.h"
 

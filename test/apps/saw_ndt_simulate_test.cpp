@@ -1,5 +1,5 @@
 #include "drive_files.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/trajectory.h"
 
 namespace saw_ndt {

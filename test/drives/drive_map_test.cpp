@@ -1,3 +1,4 @@
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/drive_map.h"
 
 #include <gtest/gtest.h>
@@ -18,10 +19,10 @@ class SequenceMap : public ::testing::Test {
     if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
   }
 
-  std::string savedBytes(const std::vector<int>& scans, const SequenceMapOptions& options) const {
+  std::string savedBytes(const std::vector<int>& scans, const DriveMapOptions& options) const {
     const KittiSequence sequence(realDataFolder() / "kitti" / "sequences" / "drive_0005");
     const std::string path = (folder.path() / "a.map").string();
-    buildSequenceMap(sequence, scans, options).build().save(path);
+    buildDriveMap(*sequence.scans(scans), options).build().save(path);
     return contentOf(path);
   }
 
@@ -29,7 +30,7 @@ class SequenceMap : public ::testing::Test {
 };
 
 TEST_F(SequenceMap, ThreadsAndTheOrderOfScansDoNotChangeABit) {
-  SequenceMapOptions options;
+  DriveMapOptions options;
   options.threads = 1;
   const std::string expected = savedBytes({0, 2, 4, 6}, options);
   EXPECT_GT(expected.size(), 100000U);
@@ -45,10 +46,10 @@ TEST_F(SequenceMap, ThreadsAndTheOrderOfScansDoNotChangeABit) {
 
 TEST_F(SequenceMap, CountsScansAndReportsThem) {
   const KittiSequence sequence(realDataFolder() / "kitti" / "sequences" / "00");
-  SequenceMapOptions options;
+  DriveMapOptions options;
   options.resolution_m = 2.0;
   std::atomic<int> done{0};
-  const WeightedVoxelMap map = buildSequenceMap(sequence, {1, 3, 5}, options, [&] { ++done; }).build();
+  const WeightedVoxelMap map = buildDriveMap(*sequence.scans({1, 3, 5}), options, [&] { ++done; }).build();
   EXPECT_EQ(done, 3);
   EXPECT_EQ(map.origin().scan_count, 3U);
   EXPECT_TRUE(map.labelled());
@@ -69,11 +70,11 @@ TEST(SequenceMapErrors, TheFirstBadScanIsNamed) {
   folder.write("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
   const KittiSequence sequence(folder.path());
   for (const int threads : {1, 2, 4}) {
-    SequenceMapOptions options;
+    DriveMapOptions options;
     options.threads = threads;
-    expectThrows<Error>([&] { buildSequenceMap(sequence, {0, 1, 2, 3, 4}, options); }, {"000001.bin"});
-    expectThrows<Error>([&] { buildSequenceMap(sequence, {4, 3, 2, 1, 0}, options); }, {"000003.bin"});
-    EXPECT_EQ(buildSequenceMap(sequence, {0, 2, 4}, options).build().origin().point_count, 12U);
+    expectThrows<Error>([&] { buildDriveMap(*sequence.scans({0, 1, 2, 3, 4}), options); }, {"000001.bin"});
+    expectThrows<Error>([&] { buildDriveMap(*sequence.scans({4, 3, 2, 1, 0}), options); }, {"000003.bin"});
+    EXPECT_EQ(buildDriveMap(*sequence.scans({0, 2, 4}), options).build().origin().point_count, 12U);
   }
 }
 

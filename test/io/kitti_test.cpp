@@ -1,3 +1,4 @@
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/kitti.h"
 
 #include <gtest/gtest.h>

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "allocation_counter.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/pcl/cloud_view.h"
@@ -18,9 +19,9 @@ TEST(Localizer, AllocatesNothingOfAScansSizeInTheSteadyState) {
   const TemporaryFolder folder;
   const SyntheticDrive drive = driveDownTheStreet(sensor, 4);
   writeKittiDrive(folder.path(), drive);
-  SequenceMapOptions map_options;
+  DriveMapOptions map_options;
   map_options.segmentation->sensor = sensor;
-  const WeightedVoxelMap map = buildSequenceMap(KittiSequence(folder.path()), {0, 2}, map_options).build();
+  const WeightedVoxelMap map = buildDriveMap(*KittiSequence(folder.path()).scans({0, 2}), map_options).build();
   for (const std::string method : {"weighted", "classical"}) {
     LocalizerOptions options;
     options.method = LocalizationMethod::named(method);

@@ -99,9 +99,9 @@ TEST_F(LocalizerTest, FollowsADrive) {
     expectNear(result.T_map_base, poseOf(scan), 0.01, 0.1);
     EXPECT_TRUE(sameBits(result.T_map_base, result.alignment.T_map_source));
     const Eigen::Isometry3d correction = result.T_map_base_predicted.inverse() * result.T_map_base;
-    EXPECT_DOUBLE_EQ(result.correction_m, correction.translation().norm());
-    EXPECT_DOUBLE_EQ(result.correction_rad, rotationAngle(correction.linear()));
-    EXPECT_LT(result.correction_m, scan >= 2 ? 0.03 : 0.5);
+    EXPECT_DOUBLE_EQ(result.correction.distance_m, correction.translation().norm());
+    EXPECT_DOUBLE_EQ(result.correction.angle_rad, rotationAngle(correction.linear()));
+    EXPECT_LT(result.correction.distance_m, scan >= 2 ? 0.03 : 0.5);
     EXPECT_GT(result.source_points, 1000U);
     EXPECT_LT(result.source_points, cloud.size());
     // Symmetric and positive: every direction of the pose is held.
@@ -166,7 +166,7 @@ TEST_F(LocalizerTest, AScanMostlyOutsideOfTheMapHasALowLikelihood) {
   lenient.acceptance.min_likelihood = 0.0;
   const LocalizationResult result = underWay(lenient).localize(viewOf(scan), 0.2);
   EXPECT_TRUE(result.accepted());
-  EXPECT_LT(result.likelihoods.unweighted, options.acceptance.min_likelihood);
+  EXPECT_LT(result.alignment.likelihoods.unweighted, options.acceptance.min_likelihood);
 }
 
 TEST_F(LocalizerTest, LargeCorrectionsAreRejected) {

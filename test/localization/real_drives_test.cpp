@@ -5,7 +5,8 @@
 #include <string>
 
 #include "real_data.h"
-#include "report/sequence_localization.h"
+#include "report/localization_summary.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/drives/drive_map.h"
 
@@ -18,9 +19,9 @@ class RealDrive {
   RealDrive(const std::string& name, const std::string& map_scans)
       : sequence_(realDataFolder() / "kitti" / "sequences" / name),
         reference_(sequence_.posesLidar()),
-        map_(buildSequenceMap(sequence_, selected(map_scans), {}).build()) {}
+        map_(buildDriveMap(*sequence_.scans(selected(map_scans)), {}).build()) {}
 
-  SequenceLocalization localize(const std::string& method, const std::string& scans, int threads,
+  DriveLocalization localize(const std::string& method, const std::string& scans, int threads,
                                 LocalizationSummary& summary) const {
     LocalizerOptions options;
     options.method = LocalizationMethod::named(method);
@@ -28,7 +29,7 @@ class RealDrive {
     Localizer localizer(std::make_shared<const WeightedVoxelMap>(map_.reweighted(options.method.voxels)), options);
     const std::vector<int> numbers = selected(scans);
     localizer.setInitialPose(reference_[static_cast<std::size_t>(numbers.front())]);
-    SequenceLocalization run = localizeSequence(localizer, sequence_, numbers);
+    DriveLocalization run = localizeDrive(localizer, *sequence_.scans(numbers));
     summary = summarize(run, localizer.options(), reference_, sequence_.stamps(), 0.0);
     return run;
   }
@@ -108,9 +109,9 @@ TEST_F(RealDrives, AccuracyOnFourClips) {
 TEST_F(RealDrives, ThreadsDoNotChangeABit) {
   const RealDrive drive("drive_0005", "0:70:2");
   LocalizationSummary summary;
-  const SequenceLocalization expected = drive.localize("weighted", "1:70:10", 1, summary);
+  const DriveLocalization expected = drive.localize("weighted", "1:70:10", 1, summary);
   for (const int threads : {2, 4}) {
-    const SequenceLocalization run = drive.localize("weighted", "1:70:10", threads, summary);
+    const DriveLocalization run = drive.localize("weighted", "1:70:10", threads, summary);
     for (std::size_t i = 0; i < run.results.size(); ++i) {
       EXPECT_TRUE(run.results[i].T_map_base.matrix() == expected.results[i].T_map_base.matrix()) << i;
       EXPECT_EQ(run.results[i].acceptance, expected.results[i].acceptance);

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -53,12 +50,12 @@ inline double rangeInStreet(const std::vector<Block>& blocks, const Eigen::Vecto
 
 /// The scan of a spinning LiDAR in the street: ring after ring from the top, azimuth rising, 1 cm of noise along the
 /// ray, nothing beyond 70 m.
-inline pcl::PointCloud<pcl::PointXYZI> scanStreet(const SensorModel& sensor, const Eigen::Isometry3d& T_street_lidar,
+inline std::vector<LidarPoint> scanStreet(const SensorModel& sensor, const Eigen::Isometry3d& T_street_lidar,
                                                   unsigned seed) {
   const std::vector<Block> blocks = streetBlocks();
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 0.01);
-  pcl::PointCloud<pcl::PointXYZI> scan;
+  std::vector<LidarPoint> scan;
   for (const double elevation_deg : sensor.elevations_deg) {
     const double elevation = radiansFromDegrees(elevation_deg);
     for (int column = 0; column < sensor.columns; ++column) {
@@ -68,8 +65,8 @@ inline pcl::PointCloud<pcl::PointXYZI> scanStreet(const SensorModel& sensor, con
       const double range =
           rangeInStreet(blocks, T_street_lidar.translation(), T_street_lidar.linear() * direction) + noise(random);
       if (!(range < 70.0)) continue;
-      pcl::PointXYZI point;
-      point.getVector3fMap() = (direction * range).cast<float>();
+      LidarPoint point;
+      positionOf(point) = (direction * range).cast<float>();
       point.intensity = 0.5F;
       scan.push_back(point);
     }
@@ -81,7 +78,7 @@ inline pcl::PointCloud<pcl::PointXYZI> scanStreet(const SensorModel& sensor, con
 struct SyntheticDrive {
   std::vector<double> stamps_s;
   std::vector<Eigen::Isometry3d> T_map_lidar;  ///< the map is the frame of the first scan
-  std::vector<pcl::PointCloud<pcl::PointXYZI>> scans;
+  std::vector<std::vector<LidarPoint>> scans;
 };
 
 inline SyntheticDrive driveDownTheStreet(const SensorModel& sensor, int scan_count) {
@@ -119,7 +116,7 @@ inline void writeKittiDrive(const std::filesystem::path& folder, const Synthetic
     std::ostringstream name;
     name << std::setfill('0') << std::setw(6) << i << ".bin";
     std::ofstream bin(folder / "velodyne" / name.str(), std::ios::binary);
-    for (const pcl::PointXYZI& point : drive.scans[i]) {
+    for (const LidarPoint& point : drive.scans[i]) {
       const float values[4] = {point.x, point.y, point.z, point.intensity};
       bin.write(reinterpret_cast<const char*>(values), sizeof values);
     }

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/pcl/cloud_view.h"
@@ -17,9 +18,9 @@ class SyntheticDriveTest : public ::testing::Test {
  protected:
   SyntheticDriveTest() : drive(driveDownTheStreet(sensor, 10)) {
     writeKittiDrive(folder.path(), drive);
-    SequenceMapOptions options;
+    DriveMapOptions options;
     options.segmentation->sensor = sensor;
-    map = buildSequenceMap(KittiSequence(folder.path()), {0, 2, 4, 6, 8}, options).build();
+    map = buildDriveMap(*KittiSequence(folder.path()).scans({0, 2, 4, 6, 8}), options).build();
   }
 
   std::vector<LocalizationResult> localize(const std::string& method, int threads,
@@ -78,9 +79,9 @@ TEST_F(SyntheticDriveTest, ThreadsDoNotChangeABit) {
       for (std::size_t k = 0; k < results.size(); ++k) {
         EXPECT_TRUE(results[k].T_map_base.matrix() == expected[k].T_map_base.matrix()) << method << k;
         EXPECT_TRUE(results[k].covariance == expected[k].covariance) << method << k;
-        EXPECT_EQ(results[k].likelihoods.unweighted, expected[k].likelihoods.unweighted);
-        EXPECT_EQ(results[k].likelihoods.non_ground, expected[k].likelihoods.non_ground);
-        EXPECT_EQ(results[k].likelihoods.nearest_voxel, expected[k].likelihoods.nearest_voxel);
+        EXPECT_EQ(results[k].alignment.likelihoods.unweighted, expected[k].alignment.likelihoods.unweighted);
+        EXPECT_EQ(results[k].alignment.likelihoods.non_ground, expected[k].alignment.likelihoods.non_ground);
+        EXPECT_EQ(results[k].alignment.likelihoods.nearest_voxel, expected[k].alignment.likelihoods.nearest_voxel);
         EXPECT_EQ(results[k].alignment.likelihood, expected[k].alignment.likelihood);
         EXPECT_EQ(results[k].alignment.evaluations, expected[k].alignment.evaluations);
       }

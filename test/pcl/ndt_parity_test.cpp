@@ -9,7 +9,7 @@
 
 #include "real_data.h"
 #include "registration/registration_fixtures.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 
 namespace saw_ndt {

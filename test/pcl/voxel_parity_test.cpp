@@ -3,7 +3,7 @@
 
 #include "map_fixtures.h"
 #include "real_data.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 
 namespace saw_ndt {
 namespace {

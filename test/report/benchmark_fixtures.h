@@ -49,7 +49,7 @@ inline BenchmarkRun handMadeRun(const std::string& sequence, MapDrive drive, int
       result.T_map_base = run.T_map_base[i];
       result.T_map_base.translation().y() += method.error_m;
       result.acceptance = scan < scan_count - method.rejected_scans ? Acceptance::ACCEPTED : Acceptance::LOW_LIKELIHOOD;
-      result.likelihoods.unweighted = result.accepted() ? 2.0 : 0.5;
+      result.alignment.likelihoods.unweighted = result.accepted() ? 2.0 : 0.5;
       result.source_points = 1000;
       result.times.total_ms = method.time_ms;
       cell.run.scans.push_back(scan);

@@ -101,7 +101,7 @@ TEST_F(BenchmarkTest, MethodsTakeTurnsAnotherOneFirstEachTime) {
   const auto runs = localizeByTurns({named('a'), named('b'), named('c')}, drive("first"), {1, 3, 4, 5});
   EXPECT_EQ(order, "abcbcacababc");
   ASSERT_EQ(runs.size(), 3U);
-  for (const SequenceLocalization& run : runs) {
+  for (const DriveLocalization& run : runs) {
     ASSERT_EQ(run.results.size(), 4U);
     EXPECT_EQ(run.scans, (std::vector<int>{1, 3, 4, 5}));
     EXPECT_NEAR(run.results[1].stamp_s, 0.3, 1e-12);

@@ -60,11 +60,11 @@ TEST(LidarReturns, RangesErrByBeamAndByReturn) {
     const LidarScan scan = LidarSimulator(scene, options).scan(motion, 0);
     std::vector<double> means(64, 0.0);
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
-      means[scan.rings[i]] += (scan.points[i].getVector3fMap().norm() - 20.0) / 2083.0;
+      means[scan.rings[i]] += (positionOf(scan.points[i]).norm() - 20.0) / 2083.0;
     }
     *variance = 0.0;
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
-      const double error = scan.points[i].getVector3fMap().norm() - 20.0 - means[scan.rings[i]];
+      const double error = positionOf(scan.points[i]).norm() - 20.0 - means[scan.rings[i]];
       *variance += error * error / static_cast<double>(scan.points.size());
     }
     return means;
@@ -116,9 +116,9 @@ Scene twoWalls(float far_m) {
 }
 
 /// The points less than 30 degrees off the x axis.
-std::vector<pcl::PointXYZI> pointsAhead(const LidarScan& scan) {
-  std::vector<pcl::PointXYZI> points;
-  for (const pcl::PointXYZI& point : scan.points) {
+std::vector<LidarPoint> pointsAhead(const LidarScan& scan) {
+  std::vector<LidarPoint> points;
+  for (const LidarPoint& point : scan.points) {
     if (point.x > std::sqrt(3.0F) * std::abs(point.y)) points.push_back(point);
   }
   return points;
@@ -128,7 +128,7 @@ TEST(LidarReturns, AtEdgesTwoNearSurfacesGiveOneReturnBetweenThem) {
   LidarOptions options = perfectLidar();
   options.beam_divergence_rad = 2e-3;
   int mixed = 0;
-  for (const pcl::PointXYZI& point : pointsAhead(firstScan(twoWalls(10.5F), options))) {
+  for (const LidarPoint& point : pointsAhead(firstScan(twoWalls(10.5F), options))) {
     EXPECT_GT(point.x, 9.9999F);
     EXPECT_LT(point.x, 10.5001F);
     if (point.x < 10.001F || point.x > 10.499F) continue;
@@ -147,7 +147,7 @@ TEST(LidarReturns, AtEdgesTwoNearSurfacesGiveOneReturnBetweenThem) {
 TEST(LidarReturns, AtEdgesOfFarSurfacesAReturnIsOfOneOfThem) {
   LidarOptions options = perfectLidar();
   options.beam_divergence_rad = 2e-3;
-  for (const pcl::PointXYZI& point : pointsAhead(firstScan(twoWalls(12.0F), options))) {
+  for (const LidarPoint& point : pointsAhead(firstScan(twoWalls(12.0F), options))) {
     // Off the ray of its own surface by up to a firing, a point keeps the range of the other one.
     EXPECT_TRUE(std::abs(point.x - 10.0F) < 0.02F || std::abs(point.x - 12.0F) < 0.02F) << point.x;
   }
@@ -157,9 +157,9 @@ TEST(LidarReturns, NothingIsMixedWithoutEdges) {
   LidarOptions options = perfectLidar();
   options.beam_divergence_rad = 5e-3;
   const LidarScan scan = firstScan(sceneOf({ground()}), options);
-  for (const pcl::PointXYZI& point : scan.points) {
+  for (const LidarPoint& point : scan.points) {
     // The farthest ring has the sky beside it, but no surface to mix with.
-    if (point.getVector3fMap().norm() > 60.0F) continue;
+    if (positionOf(point).norm() > 60.0F) continue;
     EXPECT_NEAR(point.z, -kSensorHeight_m, 1e-4);
   }
 }
@@ -174,7 +174,7 @@ TEST(LidarReturns, RainGivesNearOutliers) {
     if (scan.semantic_classes[i] != 1) continue;
     drops += 1.0;
     EXPECT_LE(scan.points[i].intensity, 0.05F);
-    EXPECT_GE(scan.points[i].getVector3fMap().norm(), 0.999F);
+    EXPECT_GE(positionOf(scan.points[i]).norm(), 0.999F);
   }
   // Those nearer than min_range_m are lost. Five standard errors of a share.
   const double firings = 64.0 * 2083.0, expected = 0.05 * std::exp(-1.0 / 4.0);

@@ -14,12 +14,12 @@
 namespace saw_ndt {
 namespace {
 
-double azimuthOf(const pcl::PointXYZI& point) {
+double azimuthOf(const LidarPoint& point) {
   const double azimuth = std::atan2(static_cast<double>(point.y), static_cast<double>(point.x));
   return azimuth < 0.0 ? azimuth + 2.0 * kPi : azimuth;
 }
 
-double firingTime(const LidarOptions& options, double stamp_s, const pcl::PointXYZI& point) {
+double firingTime(const LidarOptions& options, double stamp_s, const LidarPoint& point) {
   return stamp_s + options.scan_period_s * wrappedAngle(azimuthOf(point)) / (2.0 * kPi);
 }
 
@@ -53,7 +53,7 @@ TEST(LidarSimulator, APlaneIsMetAtHeightOverSineOfElevation) {
     const double sine = std::sin(radiansFromDegrees(-simulator.options().sensor.elevations_deg[scan.rings[i]]));
     // At 1e-7 of a float's digits over the grazing angle.
     const double range_m = kSensorHeight_m / sine;
-    EXPECT_NEAR(scan.points[i].getVector3fMap().norm(), range_m, range_m > 40.0 ? 1e-3 : 1e-4);
+    EXPECT_NEAR(positionOf(scan.points[i]).norm(), range_m, range_m > 40.0 ? 1e-3 : 1e-4);
     EXPECT_EQ(scan.semantic_classes[i], 40);
     ++counts[scan.rings[i]];
   }
@@ -70,7 +70,7 @@ TEST(LidarSimulator, PointsOfAWallAndASphereLieOnThem) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (scan.semantic_classes[i] != 50) continue;
     const Eigen::Vector3f point =
-        scan.points[i].getVector3fMap() + Eigen::Vector3f(0, 0, static_cast<float>(kSensorHeight_m));
+        positionOf(scan.points[i]) + Eigen::Vector3f(0, 0, static_cast<float>(kSensorHeight_m));
     const float from_centre = (point - Eigen::Vector3f(9, 3, 1)).norm();
     if (from_centre < 2.0F) {
       // Chords of 40 facets a half turn are up to 1.5 (1 - cos(pi / 80)) inside, on both axes.
@@ -149,7 +149,7 @@ TEST(LidarSimulator, UndoingTheMotionOfARollingShutterRecoversTheWalls) {
   int counts[5] = {};
   double farthest_from_plane_m = 0.0, farthest_uncorrected_m = 0.0;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    const Eigen::Vector3d point = scan.points[i].getVector3fMap().cast<double>();
+    const Eigen::Vector3d point = positionOf(scan.points[i]).cast<double>();
     const auto distance = [&](const Eigen::Isometry3d& T) {
       const Eigen::Vector3d p = T * point;
       const double distances[] = {p.z(), p.x() + 30, p.x() - 30, p.y() + 30, p.y() - 30};
@@ -182,7 +182,7 @@ TEST(LidarSimulator, WhatMovesIsSeenWhereItIsWhenFiredAt) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (scan.semantic_classes[i] != 252) continue;
     ++count;
-    const Eigen::Vector3d point = motion.T_scene_lidar[0] * scan.points[i].getVector3fMap().cast<double>();
+    const Eigen::Vector3d point = motion.T_scene_lidar[0] * positionOf(scan.points[i]).cast<double>();
     const Eigen::Vector3d in_car = T_scene_car(firingTime(options, 5.0, scan.points[i])).inverse() * point;
     const Eigen::Array3d beyond = in_car.array().abs() - Eigen::Array3d(2.0, 1.0, 0.9);
     EXPECT_NEAR(beyond.maxCoeff(), 0.0, 1e-4);

@@ -5,7 +5,7 @@
 
 #include "real_data.h"
 #include "report/scan_statistics.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "simulation/lidar_simulator.h"
 #include "simulation/short_drive.h"

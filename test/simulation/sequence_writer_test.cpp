@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/trajectory.h"
 #include "simple_scene.h"
 #include "temporary_folder.h"
@@ -53,7 +53,7 @@ TEST_F(SequenceWriterTest, ASequenceReadsBack) {
     ASSERT_EQ(points.size(), scan.points.size());
     point_count += points.size();
     for (std::size_t k = 0; k < points.size(); ++k) {
-      EXPECT_EQ(points[k].getVector3fMap(), scan.points[k].getVector3fMap());
+      EXPECT_EQ(positionOf(points[k]), positionOf(scan.points[k]));
       EXPECT_EQ(points[k].intensity, scan.points[k].intensity);
     }
     EXPECT_EQ(sequence.readLabels(i), scan.semantic_classes);

@@ -14,6 +14,8 @@ class Error : public std::runtime_error {
   /// @param reason  what is wrong, as a clause without a full stop
   Error(const std::string& file, const std::string& place, const std::string& reason)
       : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + reason) {}
+  /// @param what  of an Error met before
+  explicit Error(const std::string& what) : std::runtime_error(what) {}
 };
 
 /// Throws std::invalid_argument "name = value: must be requirement" unless `valid`; for the check of an options struct.

@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "saw_ndt/common/scan_view.h"
+
 namespace saw_ndt {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -12,6 +14,12 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double radiansFromDegrees(double degrees) { return degrees * (kPi / 180.0); }
 constexpr double degreesFromRadians(double radians) { return radians * (180.0 / kPi); }
 
+/// The position of a point (m), to read and to set.
+inline Eigen::Map<Eigen::Vector3f> positionOf(LidarPoint& point) { return Eigen::Map<Eigen::Vector3f>(&point.x); }
+inline Eigen::Map<const Eigen::Vector3f> positionOf(const LidarPoint& point) {
+  return Eigen::Map<const Eigen::Vector3f>(&point.x);
+}
+
 /// The angle, in radians, wrapped to (-pi, pi].
 double wrappedAngle(double angle);
 
@@ -21,6 +29,9 @@ Eigen::Matrix3d skewSymmetric(const Eigen::Vector3d& v);
 /// The transform with its rotation replaced by the nearest rotation matrix. Products of many poses drift away from
 /// orthonormality, and `T1 * T2.inverse() * T1` multiplies that drift: normalize what such a product returns.
 Eigen::Isometry3d normalizedRotation(const Eigen::Isometry3d& T);
+
+/// Throws std::invalid_argument that names the transform unless it is finite and its rotation is one to within 1e-6.
+void requireRigid(const Eigen::Isometry3d& T, const char* name);
 
 /// The rotation whose axis times angle (rad) is `rotation_vector`.
 Eigen::Matrix3d rotationFromVector(const Eigen::Vector3d& rotation_vector);

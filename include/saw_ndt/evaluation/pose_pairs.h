@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "saw_ndt/io/trajectory.h"
+#include "saw_ndt/common/stamped_pose.h"
 
 namespace saw_ndt {
 

@@ -4,13 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-namespace saw_ndt {
+#include "saw_ndt/common/stamped_pose.h"
 
-/// Where the body (the LiDAR, unless stated otherwise) was at a moment.
-struct StampedPose {
-  double stamp_s = 0.0;
-  Eigen::Isometry3d T_map_body = Eigen::Isometry3d::Identity();
-};
+namespace saw_ndt {
 
 /// The two text formats of trajectories.
 enum class TrajectoryFormat {

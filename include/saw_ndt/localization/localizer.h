@@ -1,36 +1,22 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
-#include <vector>
 
 #include "saw_ndt/localization/localization_method.h"
 #include "saw_ndt/localization/motion_prediction.h"
-#include "localization/source_voxel_filter.h"
+#include "saw_ndt/localization/pose_judge.h"
+#include "saw_ndt/localization/scan_preparation.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
-#include "registration/likelihoods.h"
 #include "saw_ndt/registration/ndt_aligner.h"
-#include "saw_ndt/segmentation/scan_segmenter.h"
-#include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
-
-/// When a result is published and stored (Section III.C of the paper).
-struct AcceptanceOptions {
-  double min_likelihood = 0.8;       ///< least Likelihoods::unweighted, which weights do not change
-  double max_correction_m = 3.0;     ///< greatest distance of the result from the prediction (m)
-  double max_correction_deg = 10.0;  ///< greatest turn from the prediction (degrees)
-  /// Before a velocity is known the vehicle may have moved this fast since the last pose (m/s).
-  double max_unknown_speed_mps = 40.0;
-
-  /// Throws std::invalid_argument that names the field and its value.
-  void check() const;
-};
 
 struct LocalizerOptions {
   LocalizationMethod method = LocalizationMethod::named("weighted");
   SegmentationOptions segmentation;
-  double source_voxel_size_m = 0.2;                                ///< see SourceVoxelFilter
+  double source_voxel_size_m = 0.2;  ///< edge of the voxels that thin a scan; 0 keeps every point
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< mounting of the LiDAR on the vehicle
   MotionPredictionOptions prediction;
   AlignmentOptions alignment;  ///< use_weights, mismatch_penalty and outlier_ratio are the method's
@@ -39,12 +25,6 @@ struct LocalizerOptions {
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
 };
-
-/// Why a scan was accepted or not.
-enum class Acceptance { ACCEPTED, NOT_CONVERGED, LOW_LIKELIHOOD, LARGE_TRANSLATION, LARGE_ROTATION };
-
-/// "accepted", "not converged", "low likelihood", "large translation", "large rotation"
-const char* toString(Acceptance acceptance);
 
 /// Wall-clock time of the stages of one scan, in milliseconds.
 struct StageTimes {
@@ -59,52 +39,54 @@ struct LocalizationResult {
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();  ///< the prediction where the scan was rejected
   Acceptance acceptance = Acceptance::NOT_CONVERGED;
   Eigen::Isometry3d T_map_base_predicted = Eigen::Isometry3d::Identity();
-  AlignmentResult alignment;
-  Likelihoods likelihoods;
-  /// Inverse of the curvature of the score by (translation, rotation), see NdtDerivatives: which directions are well
-  /// held and which are not. Relative, not calibrated; zero where the scan was rejected or the curvature is singular.
+  AlignmentResult alignment;  ///< with likelihoods
+  /// Inverse of the curvature of the score by (translation, rotation), see AlignmentResult::information: which
+  /// directions are well held and which are not. Relative, not calibrated; zero where the scan was rejected or the
+  /// curvature is singular.
   Matrix6d covariance = Matrix6d::Zero();
-  double correction_m = 0.0;    ///< distance of the registration's result from the prediction
-  double correction_rad = 0.0;  ///< turn of the registration's result from the prediction
+  PoseCorrection correction;  ///< of the prediction by registration
   std::size_t source_points = 0;
   StageTimes times;
+  TrackState track;  ///< after this scan
 
   bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
 };
 
-/// Completes a result of which prediction, alignment and likelihoods are known: judges it by the limits and sets
-/// corrections, acceptance and pose. An accepted pose goes into `prediction`.
-void concludeLocalization(LocalizationResult& result, const AcceptanceOptions& limits, MotionPrediction& prediction);
+/// Registers a source, in the base's frame, from a predicted pose; fills AlignmentResult::likelihoods.
+using SourceAligner =
+    std::function<AlignmentResult(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted)>;
 
-/// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. Scratch memory is kept from scan to
-/// scan.
+/// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. It prepares the scan (ScanPreparation),
+/// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). Scratch memory is kept from scan to
+/// scan. One object for each vehicle, not to be shared by threads; the map may be.
 class Localizer {
  public:
-  /// @param map  read with options.method.voxels (see WeightedVoxelMap::load and reweighted)
-  /// @throws std::invalid_argument where an option does not hold, the map is null, was read in another way, or
-  ///         has no labels while the method segments
+  /// @param map  read with options.method.voxels
+  /// @throws std::invalid_argument where an option does not hold, or the map has no labels while the method segments
   Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options);
+  /// With an aligner of one's own.
+  /// @throws std::invalid_argument where an option does not hold
+  Localizer(SourceAligner aligner, const LocalizerOptions& options);
 
-  /// Where the vehicle is at the first scan, or after it was lost. @throws std::invalid_argument unless it is finite
+  /// Where the vehicle is at the first scan, or after it was lost.
+  /// @throws std::invalid_argument unless it is a finite rigid transform
   void setInitialPose(const Eigen::Isometry3d& T_map_base) { prediction_.reset(T_map_base); }
 
   /// @param scan     in the LiDAR frame
   /// @param stamp_s  time of the scan; stamps should grow
-  /// @throws std::invalid_argument where the stamp is not finite
+  /// @throws std::logic_error before setInitialPose(), std::invalid_argument where the stamp is not finite
   LocalizationResult localize(const ScanView& scan, double stamp_s);
 
   const LocalizerOptions& options() const { return options_; }
+  /// What is known of the vehicle after the last scan.
+  const TrackState& track() const { return prediction_.state(); }
 
  private:
-  const SourcePoints& makeSource(const ScanView& scan, StageTimes& times);
-
-  std::shared_ptr<const WeightedVoxelMap> map_;
   LocalizerOptions options_;
-  ScanSegmenter segmenter_;
-  std::vector<StructuralLabel> labels_;
-  SourceVoxelFilter filter_;
+  ScanPreparation preparation_;
   MotionPrediction prediction_;
-  NdtAligner aligner_;
+  SourceAligner aligner_;
+  PoseJudge judge_;
 };
 
 }  // namespace saw_ndt

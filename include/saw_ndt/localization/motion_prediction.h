@@ -1,7 +1,6 @@
 #pragma once
 
-#include <Eigen/Geometry>
-#include <optional>
+#include "saw_ndt/localization/track_state.h"
 
 namespace saw_ndt {
 
@@ -13,33 +12,31 @@ struct MotionPredictionOptions {
   void check() const;
 };
 
-/// Predicts the next pose from the last two accepted ones and their stamps (Section III.C of the paper): constant
-/// velocity and turn rate in the vehicle's own frame, a circle where it turns, both bounded. Before there are two, the
-/// last pose.
+/// Follows the track of a vehicle: predicts its next pose from the last two accepted ones and their stamps (Section
+/// III.C of the paper), by constant velocity and turn rate in the vehicle's own frame, a circle where it turns, both
+/// bounded. Before there are two, the last pose.
 class MotionPrediction {
  public:
   explicit MotionPrediction(const MotionPredictionOptions& options = {});
 
-  /// Forgets all poses and starts from one whose stamp is not known. Here and below what is not finite throws
-  /// std::invalid_argument.
+  /// Forgets all poses and starts from one whose stamp is not known.
+  /// @throws std::invalid_argument unless it is a finite rigid transform
   void reset(const Eigen::Isometry3d& T_map_base);
   /// Adds an accepted pose. Stamps (s) that do not grow leave the velocity unknown.
+  /// @throws std::invalid_argument for what is not finite
   void accept(const Eigen::Isometry3d& T_map_base, double stamp_s);
+  /// A scan was rejected: nothing new is known.
+  void reject();
 
   /// The pose expected at a stamp.
+  /// @throws std::invalid_argument for a stamp that is not finite, std::logic_error before reset() or accept()
   Eigen::Isometry3d predict(double stamp_s) const;
-  /// Whether two poses with growing stamps are known.
-  bool velocityKnown() const { return velocity_known_; }
-  /// Seconds since the last accepted pose; nothing where its stamp is not known.
-  std::optional<double> timeSinceLast(double stamp_s) const;
+
+  const TrackState& state() const { return state_; }
 
  private:
   MotionPredictionOptions options_;
-  Eigen::Isometry3d T_map_last_ = Eigen::Isometry3d::Identity();
-  std::optional<double> last_stamp_s_;
-  bool velocity_known_ = false;
-  Eigen::Vector3d velocity_base_mps_ = Eigen::Vector3d::Zero();  // in the frame of the moving base
-  Eigen::Vector3d turn_rate_base_radps_ = Eigen::Vector3d::Zero();
+  TrackState state_;
 };
 
 }  // namespace saw_ndt

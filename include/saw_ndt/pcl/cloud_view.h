@@ -3,22 +3,61 @@
 #include <pcl/point_cloud.h>
 #include <pcl/type_traits.h>
 
+#include <initializer_list>
+#include <type_traits>
+
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/map/weighted_map_builder.h"
 
 namespace saw_ndt {
 
-/// A view of a cloud whose points have y and z behind x, as all of PCL's do; without ring numbers.
+namespace internal {
+
+// The field that `member`, a generic lambda, returns the address of, where the point type has it. Drivers name theirs
+// without registering them with PCL.
+template <typename PointT, typename Member>
+PointField fieldOf(const PointT& first, const Member& member, double scale_of_integers = 1.0) {
+  if constexpr (std::is_invocable_v<const Member&, const PointT&>) {
+    using Number = std::decay_t<decltype(*member(first))>;
+    return PointField(member(first), sizeof(PointT), std::is_integral_v<Number> ? scale_of_integers : 1.0);
+  } else {
+    return {};
+  }
+}
+
+inline PointField firstKnown(std::initializer_list<PointField> fields) {
+  for (const PointField& field : fields) {
+    if (field.known()) return field;
+  }
+  return {};
+}
+
+}  // namespace internal
+
+/// A view of a cloud whose points have y and z behind x, as all of PCL's do. Ring numbers come from a member `ring` or
+/// `channel` of the point type, times from `time`, `t`, `timestamp` or `offset_time`, where it has one: seconds in a
+/// floating-point number, nanoseconds in an integer.
 template <typename PointT>
 ScanView viewOf(const pcl::PointCloud<PointT>& cloud) {
   static_assert(sizeof(PointT) % sizeof(float) == 0, "points must be a whole number of floats apart");
   ScanView view;
-  view.xyz = cloud.empty() ? nullptr : &cloud.front().x;
   view.stride = sizeof(PointT) / sizeof(float);
   view.size = cloud.size();
   view.width = cloud.width;
   view.height = cloud.height;
+  if (cloud.empty()) return view;
+  const PointT& first = cloud.front();
+  view.xyz = &first.x;
+  constexpr double kNanosecond_s = 1e-9;
+  using internal::fieldOf;
+  view.rings = internal::firstKnown({fieldOf(first, [](const auto& point) -> decltype(&point.ring) { return &point.ring; }),
+                                     fieldOf(first, [](const auto& point) -> decltype(&point.channel) { return &point.channel; })});
+  view.times_s = internal::firstKnown(
+      {fieldOf(first, [](const auto& point) -> decltype(&point.time) { return &point.time; }, kNanosecond_s),
+       fieldOf(first, [](const auto& point) -> decltype(&point.t) { return &point.t; }, kNanosecond_s),
+       fieldOf(first, [](const auto& point) -> decltype(&point.timestamp) { return &point.timestamp; }, kNanosecond_s),
+       fieldOf(first, [](const auto& point) -> decltype(&point.offset_time) { return &point.offset_time; }, kNanosecond_s)});
   return view;
 }
 

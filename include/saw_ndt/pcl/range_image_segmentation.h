@@ -50,7 +50,6 @@ class RangeImageSegmentation : public pcl::FilterIndices<PointT> {
 
   ScanSegmenter segmenter_;
   std::vector<StructuralLabel> labels_;
-  std::vector<std::uint16_t> rings_;
   std::vector<float> selected_xyz_;
 };
 

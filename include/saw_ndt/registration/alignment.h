@@ -3,11 +3,30 @@
 #include <Eigen/Geometry>
 
 #include "saw_ndt/common/geometry.h"
-#include "registration/likelihoods.h"
-#include "registration/ndt_objective.h"
-#include "registration/score_function.h"
 
 namespace saw_ndt {
+
+/// The voxels that a source point is paired with.
+enum class NeighborhoodSearchMethod {
+  RADIUS,    ///< every voxel whose mean lies within one resolution of the point, as PCL
+  DIRECT26,  ///< the point's own voxel and the 26 around it
+  DIRECT7,   ///< the point's own voxel and the 6 that share a face with it
+  DIRECT1,   ///< the point's own voxel
+};
+
+/// The function of the squared Mahalanobis distance m that a source-voxel pair scores: amplitude * exp(-d2 / 2 * m).
+enum class ScoreFunction {
+  Magnusson,  ///< eq. 6.8 to 6.10 of Magnusson (2009): a normal distribution mixed with uniform outliers, as PCL
+  Paper,      ///< eq. (2) of the weighted NDT paper: amplitude 1, d2 = 1
+};
+
+/// How well a pose explains a source, in figures that weights do not change. Each is of Magnusson's score function.
+struct Likelihoods {
+  double unweighted = 0.0;  ///< sum over all pairs / number of source points: PCL's, with every weight 1
+  /// The same over the points not labelled ground. The ground keeps the others high where a pose is lost along a road.
+  double non_ground = 0.0;
+  double nearest_voxel = 0.0;  ///< mean over the points that meet a voxel of the score of their best voxel
+};
 
 /// How the pose of greatest score is sought.
 enum class Optimizer {

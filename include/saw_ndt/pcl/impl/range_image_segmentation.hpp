@@ -1,25 +1,14 @@
 #pragma once
 
-#include <algorithm>
 #include <limits>
 #include <pcl/filters/impl/filter_indices.hpp>
 #include <pcl/impl/pcl_base.hpp>
 #include <stdexcept>
-#include <type_traits>
 
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/pcl/range_image_segmentation.h"
 
 namespace saw_ndt {
-namespace detail {
-
-template <typename PointT, typename = void>
-struct HasRing : std::false_type {};
-template <typename PointT>
-struct HasRing<PointT, std::void_t<decltype(std::declval<PointT>().ring)>> : std::true_type {};
-
-}  // namespace detail
-
 template <typename PointT>
 RangeImageSegmentation<PointT>::RangeImageSegmentation(bool extract_removed_indices)
     : pcl::FilterIndices<PointT>(extract_removed_indices) {
@@ -36,12 +25,6 @@ ScanView RangeImageSegmentation<PointT>::selectedInput() {
   const PointCloud& input = *this->input_;
   ScanView scan = viewOf(input);
   if (input.empty()) return scan;
-  if constexpr (detail::HasRing<PointT>::value) {
-    rings_.resize(input.size());
-    std::transform(input.begin(), input.end(), rings_.begin(),
-                   [](const PointT& point) { return static_cast<std::uint16_t>(point.ring); });
-    scan.rings = rings_.data();
-  }
   if (!this->fake_indices_) {
     // Points that are not selected become no returns, so that rows and file order stay what they are.
     selected_xyz_.assign(3 * input.size(), std::numeric_limits<float>::quiet_NaN());

@@ -1,25 +1,29 @@
-#include "report/pcl_ndt_localizer.h"
+#include "report/pcl_ndt.h"
 
 #include <gtest/gtest.h>
 
 #include "localization/synthetic_drive.h"
 #include "saw_ndt/drives/drive_map.h"
-#include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {
 
-class PclNdtLocalizerTest : public ::testing::Test {
+class PclNdtTest : public ::testing::Test {
  protected:
-  PclNdtLocalizerTest() {
+  PclNdtTest() {
     writeKittiDrive(folder.path() / "drive", drive);
     const KittiSequence sequence(folder.path() / "drive");
-    target = mapPoints(sequence, {0, 2, 4});
-    SequenceMapOptions map_options;
+    target = mapPoints(*sequence.scans({0, 2, 4}));
+    DriveMapOptions map_options;
     map_options.segmentation.reset();
-    judge = std::make_shared<const WeightedVoxelMap>(buildSequenceMap(sequence, {0, 2, 4}, map_options).build());
+    options.method = LocalizationMethod::named("classical");
+    options.acceptance.min_likelihood = 0.0;
+    judge = std::make_shared<const WeightedVoxelMap>(buildDriveMap(*sequence.scans({0, 2, 4}), map_options).build());
   }
+
+  Localizer localizer() const { return Localizer(pclNdtAligner(target, 1.0, judge), options); }
 
   TemporaryFolder folder;
   const SyntheticDrive drive = driveDownTheStreet(SensorModel::named("VLP-16"), 5);
@@ -28,9 +32,9 @@ class PclNdtLocalizerTest : public ::testing::Test {
   LocalizerOptions options;
 };
 
-TEST_F(PclNdtLocalizerTest, FindsThePoseOfAScan) {
+TEST_F(PclNdtTest, FindsThePoseOfAScan) {
   EXPECT_EQ(target->size(), drive.scans[0].size() + drive.scans[2].size() + drive.scans[4].size());
-  PclNdtLocalizer localizer(target, 1.0, judge, options);
+  Localizer localizer = this->localizer();
   for (const std::size_t i : {1, 4}) {
     // PCL does not find its way back from 0.5 m, which is how far the vehicle moves from scan to scan.
     Eigen::Isometry3d T_start = drive.T_map_lidar[i];
@@ -41,25 +45,25 @@ TEST_F(PclNdtLocalizerTest, FindsThePoseOfAScan) {
     EXPECT_LT((result.T_map_base.translation() - drive.T_map_lidar[i].translation()).norm(), 0.05) << i;
     EXPECT_GT(result.source_points, 1000U);
     EXPECT_LT(result.source_points, drive.scans[i].size());
-    EXPECT_GT(result.likelihoods.unweighted, 0.5);
+    EXPECT_GT(result.alignment.likelihoods.unweighted, 0.5);
     EXPECT_EQ(result.times.segment_ms, 0.0);
     EXPECT_GE(result.times.total_ms, result.times.filter_ms + result.times.align_ms);
   }
 }
 
-TEST_F(PclNdtLocalizerTest, AMountedLidar) {
+TEST_F(PclNdtTest, AMountedLidar) {
   options.T_base_lidar.translation() << 1.0, 0.2, 1.7;
-  PclNdtLocalizer localizer(target, 1.0, judge, options);
+  Localizer localizer = this->localizer();
   const Eigen::Isometry3d T_map_base = drive.T_map_lidar[1] * options.T_base_lidar.inverse();
   localizer.setInitialPose(T_map_base);
   const LocalizationResult result = localizer.localize(viewOf(drive.scans[1]), 0.1);
   EXPECT_LT((result.T_map_base.translation() - T_map_base.translation()).norm(), 0.05);
 }
 
-TEST_F(PclNdtLocalizerTest, FarCorrectionsAreRejectedAndThePredictionStays) {
+TEST_F(PclNdtTest, FarCorrectionsAreRejectedAndThePredictionStays) {
   options.acceptance.max_correction_m = 0.1;
   options.acceptance.max_unknown_speed_mps = 0.0;
-  PclNdtLocalizer localizer(target, 1.0, judge, options);
+  Localizer localizer = this->localizer();
   Eigen::Isometry3d T_start = drive.T_map_lidar[0];
   T_start.translation().x() += 0.5;
   localizer.setInitialPose(T_start);
@@ -68,17 +72,16 @@ TEST_F(PclNdtLocalizerTest, FarCorrectionsAreRejectedAndThePredictionStays) {
   EXPECT_EQ(result.T_map_base.matrix(), T_start.matrix());
 }
 
-TEST_F(PclNdtLocalizerTest, AnEmptyScanIsRejected) {
-  PclNdtLocalizer localizer(target, 1.0, judge, options);
+TEST_F(PclNdtTest, AnEmptyScanIsRejected) {
+  Localizer localizer = this->localizer();
   localizer.setInitialPose(drive.T_map_lidar[0]);
-  const pcl::PointCloud<pcl::PointXYZI> nothing;
-  EXPECT_EQ(localizer.localize(viewOf(nothing), 0.0).acceptance, Acceptance::NOT_CONVERGED);
+    EXPECT_EQ(localizer.localize(ScanView(), 0.0).acceptance, Acceptance::NOT_CONVERGED);
 }
 
-TEST_F(PclNdtLocalizerTest, RefusesWhatCannotWork) {
-  expectThrows<std::invalid_argument>([&] { PclNdtLocalizer(nullptr, 1.0, judge, options); }, {"null"});
-  expectThrows<std::invalid_argument>([&] { PclNdtLocalizer(target, 1.0, nullptr, options); }, {"null"});
-  expectThrows<std::invalid_argument>([&] { PclNdtLocalizer(target, 0.0, judge, options); }, {"resolution_m = 0"});
+TEST_F(PclNdtTest, RefusesWhatCannotWork) {
+  expectThrows<std::invalid_argument>([&] { pclNdtAligner(nullptr, 1.0, judge); }, {"null"});
+  expectThrows<std::invalid_argument>([&] { pclNdtAligner(target, 1.0, nullptr); }, {"null"});
+  expectThrows<std::invalid_argument>([&] { pclNdtAligner(target, 0.0, judge); }, {"resolution_m = 0"});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "report/sequence_localization.h"
+#include "report/localization_summary.h"
 
 #include <sys/resource.h>
 
@@ -13,7 +13,6 @@
 #include "common/atomic_output.h"
 #include "io/staged_output.h"
 #include "saw_ndt/io/trajectory.h"
-#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 namespace {
@@ -25,14 +24,14 @@ double peakResidentMegabytes() {
 }
 
 template <typename Field>
-std::vector<double> collect(const SequenceLocalization& run, Field field) {
+std::vector<double> collect(const DriveLocalization& run, Field field) {
   std::vector<double> values;
   values.reserve(run.results.size());
   for (const LocalizationResult& result : run.results) values.push_back(static_cast<double>(field(result)));
   return values;
 }
 
-void writeFrames(const std::filesystem::path& path, const SequenceLocalization& run) {
+void writeFrames(const std::filesystem::path& path, const DriveLocalization& run) {
   AtomicOutput output(path);
   std::ostream& out = output.stream();
   out << "scan,stamp,accepted,reason,converged,iterations,likelihood,correction_m,correction_deg,source_points,"
@@ -43,52 +42,23 @@ void writeFrames(const std::filesystem::path& path, const SequenceLocalization& 
     const LocalizationResult& r = run.results[i];
     out << run.scans[i] << ',' << std::setprecision(9) << r.stamp_s << ',' << r.accepted() << ','
         << toString(r.acceptance) << ',' << r.alignment.converged() << ',' << r.alignment.iterations << ','
-        << std::setprecision(6) << r.alignment.likelihood << ',' << r.correction_m << ','
-        << degreesFromRadians(r.correction_rad) << ',' << r.source_points << ',' << std::setprecision(3)
+        << std::setprecision(6) << r.alignment.likelihood << ',' << r.correction.distance_m << ','
+        << degreesFromRadians(r.correction.angle_rad) << ',' << r.source_points << ',' << std::setprecision(3)
         << r.times.segment_ms << ',' << r.times.filter_ms << ',' << r.times.align_ms << ',' << r.times.total_ms << ','
-        << r.alignment.evaluations << ',' << std::setprecision(6) << r.likelihoods.unweighted << ','
-        << r.likelihoods.non_ground << ',' << r.likelihoods.nearest_voxel << '\n';
+        << r.alignment.evaluations << ',' << std::setprecision(6) << r.alignment.likelihoods.unweighted << ','
+        << r.alignment.likelihoods.non_ground << ',' << r.alignment.likelihoods.nearest_voxel << '\n';
   }
   output.commit();
 }
 
 }  // namespace
 
-SequenceLocalization localizeSequence(Localizer& localizer, const KittiSequence& sequence,
-                                      const std::vector<int>& scans, const std::function<void()>& scan_done) {
-  const auto localize = [&](const ScanView& scan, double stamp_s) { return localizer.localize(scan, stamp_s); };
-  return localizeByTurns({localize}, sequence, scans, scan_done).front();
+bool anyScanAfterSkip(const std::vector<double>& stamps_s, double skip_s) {
+  const auto [first, last] = std::minmax_element(stamps_s.begin(), stamps_s.end());
+  return *last - *first >= skip_s;
 }
 
-std::vector<SequenceLocalization> localizeByTurns(const std::vector<ScanLocalizer>& localizers,
-                                                  const KittiSequence& sequence, const std::vector<int>& scans,
-                                                  const std::function<void()>& turn_done) {
-  const std::vector<double> stamps_s = sequence.stamps();
-  std::vector<SequenceLocalization> runs(localizers.size());
-  for (SequenceLocalization& run : runs) run.scans = scans;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const pcl::PointCloud<pcl::PointXYZI> cloud = sequence.readScan(scans[i]);
-    for (std::size_t turn = 0; turn < localizers.size(); ++turn) {
-      const std::size_t whose = (i + turn) % localizers.size();
-      runs[whose].results.push_back(localizers[whose](viewOf(cloud), stamps_s[static_cast<std::size_t>(scans[i])]));
-      if (turn_done) turn_done();
-    }
-  }
-  return runs;
-}
-
-bool anyScanAfterSkip(const std::vector<int>& scans, const std::vector<double>& stamps_s, double skip_s) {
-  double first_s = stamps_s[static_cast<std::size_t>(scans.front())], last_s = first_s;
-  for (const int scan : scans) {
-    first_s = std::min(first_s, stamps_s[static_cast<std::size_t>(scan)]);
-    last_s = std::max(last_s, stamps_s[static_cast<std::size_t>(scan)]);
-  }
-  return last_s - first_s >= skip_s;
-}
-
-LocalizationSummary summarize(const SequenceLocalization& run, const LocalizerOptions& options,
-                              const std::vector<Eigen::Isometry3d>& reference_lidar,
-                              const std::vector<double>& stamps_s, double skip_s) {
+LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptions& options, double skip_s) {
   using R = LocalizationResult;
   LocalizationSummary summary;
   summary.method = options.method.name;
@@ -102,17 +72,17 @@ LocalizationSummary summarize(const SequenceLocalization& run, const LocalizerOp
   summary.iterations_mean = mean(collect(run, [](const R& r) { return r.alignment.iterations; }));
   summary.evaluations_mean = mean(collect(run, [](const R& r) { return r.alignment.evaluations; }));
   summary.likelihood_mean = mean(collect(run, [](const R& r) { return r.alignment.likelihood; }));
-  summary.nearest_voxel_likelihood_mean = mean(collect(run, [](const R& r) { return r.likelihoods.nearest_voxel; }));
-  summary.non_ground_likelihood_mean = mean(collect(run, [](const R& r) { return r.likelihoods.non_ground; }));
+  summary.nearest_voxel_likelihood_mean = mean(collect(run, [](const R& r) { return r.alignment.likelihoods.nearest_voxel; }));
+  summary.non_ground_likelihood_mean = mean(collect(run, [](const R& r) { return r.alignment.likelihoods.non_ground; }));
   summary.peak_rss_mb = peakResidentMegabytes();
   summary.threads = threadCount(options.alignment.threads);
-  if (!reference_lidar.empty()) {
+  const std::vector<double> stamps_s = collect(run, [](const R& r) { return r.stamp_s; });
+  if (!run.T_map_lidar_reference.empty() && anyScanAfterSkip(stamps_s, skip_s)) {
     const Eigen::Isometry3d T_lidar_base = options.T_base_lidar.inverse();
     std::vector<StampedPose> reference, estimate;
     for (std::size_t i = 0; i < run.results.size(); ++i) {
-      const auto scan = static_cast<std::size_t>(run.scans[i]);
-      reference.push_back({stamps_s.at(scan), reference_lidar.at(scan) * T_lidar_base});
-      estimate.push_back({run.results[i].stamp_s, run.results[i].T_map_base});
+      reference.push_back({stamps_s[i], run.T_map_lidar_reference[i] * T_lidar_base});
+      estimate.push_back({stamps_s[i], run.results[i].T_map_base});
     }
     summary.metrics = evaluateTrajectory(reference, estimate, skip_s);
   }
@@ -121,7 +91,7 @@ LocalizationSummary summarize(const SequenceLocalization& run, const LocalizerOp
 
 std::string toJsonText(const LocalizationSummary& summary) { return toJson(summary).dump(2) + "\n"; }
 
-void writeLocalization(const std::filesystem::path& folder, const SequenceLocalization& run,
+void writeLocalization(const std::filesystem::path& folder, const DriveLocalization& run,
                        const LocalizationSummary& summary, const Eigen::Isometry3d& T_base_lidar,
                        const Eigen::Isometry3d& T_camera_lidar) {
   std::vector<StampedPose> base_poses;

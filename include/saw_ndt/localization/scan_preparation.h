@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+
+#include "saw_ndt/common/scan_view.h"
+#include "saw_ndt/map/voxel_weighting.h"
+#include "saw_ndt/registration/source_points.h"
+#include "saw_ndt/segmentation/scan_segmenter.h"
+
+namespace saw_ndt {
+
+struct ScanPreparationOptions {
+  bool segment = true;               ///< label the points; without it every raw point is a source point
+  SegmentationOptions segmentation;  ///< how
+  double ground_ratio = 0.5;         ///< rho, the share of the ground points kept, 0 to 1; see GroundSampler
+  ConfidenceOptions confidence;      ///< points of a label whose confidence is 0 are left out
+  double source_voxel_size_m = 0.2;  ///< edge of the voxels that thin the points; 0 keeps every point
+  Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< mounting of the LiDAR on the vehicle
+  int threads = 0;                                                 ///< 0: all cores; the source does not depend on it
+
+  /// Throws std::invalid_argument that names the field and its value.
+  void check() const;
+};
+
+/// Makes of a scan the source points that are registered: segments it, selects points, brings them into the frame of the
+/// vehicle's base, and thins them to one centroid for every voxel and label (Section III.C of the paper). Scratch memory
+/// is kept from scan to scan. Not to be shared by threads that call it at the same time.
+class ScanPreparation {
+ public:
+  /// @throws std::invalid_argument where an option does not hold
+  explicit ScanPreparation(const ScanPreparationOptions& options);
+  ~ScanPreparation();
+  ScanPreparation(ScanPreparation&& other) noexcept;
+  ScanPreparation& operator=(ScanPreparation&& other) noexcept;
+
+  /// The source of a scan, in the base's frame, valid until the next call.
+  const SourcePoints& prepare(const ScanView& scan);
+
+  /// How long the last call took for the labels, and for selecting and thinning (ms).
+  double segmentMilliseconds() const;
+  double filterMilliseconds() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace saw_ndt

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+
+namespace saw_ndt {
+
+/// How far a localizer knows where the vehicle is.
+enum class TrackStatus {
+  NOT_INITIALIZED,  ///< no pose has been given yet
+  TRACKING,         ///< the last scan was accepted, or an initial pose was given since
+  COASTING,         ///< the last scan was rejected: poses are predictions
+};
+
+/// "not initialized", "tracking", "coasting"
+const char* toString(TrackStatus status);
+
+/// What a localizer knows of the vehicle between two scans.
+struct TrackState {
+  TrackStatus status = TrackStatus::NOT_INITIALIZED;
+  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();  ///< the last accepted pose, or the initial one
+  std::optional<double> stamp_s;                                 ///< of that pose; an initial pose has none
+  /// Whether two accepted poses with growing stamps are known, from which these velocities follow.
+  bool velocity_known = false;
+  Eigen::Vector3d velocity_base_mps = Eigen::Vector3d::Zero();     ///< in the frame of the moving base
+  Eigen::Vector3d turn_rate_base_radps = Eigen::Vector3d::Zero();  ///< likewise
+  int rejected_scans = 0;  ///< since the last accepted one
+
+  /// Seconds from the last accepted pose to a stamp; nothing where its stamp is not known.
+  std::optional<double> timeSinceLast(double at_stamp_s) const {
+    if (!stamp_s) return std::nullopt;
+    return at_stamp_s - *stamp_s;
+  }
+};
+
+}  // namespace saw_ndt

@@ -1,0 +1,154 @@
+#include "saw_ndt/drives/kitti_sequence.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <stdexcept>
+
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/io/kitti.h"
+#include "saw_ndt/io/trajectory.h"
+
+namespace saw_ndt {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr char kTimesFile[] = "times.txt";
+
+class SelectedScans : public ScanSource {
+ public:
+  SelectedScans(const KittiSequence& sequence, const std::vector<int>& numbers) : sequence_(sequence), numbers_(numbers) {
+    has_stamps_ = fs::exists(sequence.folder() / kTimesFile);
+    if (has_stamps_) sequence.stamps();
+    if (sequence.hasPoses()) sequence.posesLidar();
+  }
+
+  bool next(RecordedScan& scan) override {
+    if (next_ == numbers_.size()) return false;
+    const int number = numbers_[next_++];
+    const auto place = static_cast<std::size_t>(number);
+    scan.number = number;
+    scan.name = sequence_.scanPath(number).filename().string();
+    scan.stamp_s = has_stamps_ ? sequence_.stamps()[place] : 0.0;
+    scan.T_map_lidar.reset();
+    if (sequence_.hasPoses()) scan.T_map_lidar = sequence_.posesLidar()[place];
+    scan.failure.clear();
+    try {
+      scan.points = sequence_.readScan(number);
+    } catch (const Error& error) {
+      scan.points.clear();
+      scan.failure = error.what();
+    }
+    return true;
+  }
+
+  std::optional<std::size_t> scanCount() const override { return numbers_.size(); }
+
+ private:
+  const KittiSequence& sequence_;
+  std::vector<int> numbers_;
+  std::size_t next_ = 0;
+  bool has_stamps_ = false;
+};
+
+}  // namespace
+
+KittiSequence::KittiSequence(const fs::path& folder, const fs::path& poses_file) : folder_(folder) {
+  const fs::path velodyne = folder / "velodyne";
+  for (const fs::path& needed : {folder, velodyne}) {
+    if (!fs::exists(needed)) throw Error(needed.string(), "", std::strerror(ENOENT));
+    if (!fs::is_directory(needed)) throw Error(needed.string(), "", std::strerror(ENOTDIR));
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(velodyne)) {
+    if (entry.path().extension() != ".bin") continue;
+    Scan scan{0, entry.path().stem().string()};
+    const char* end = scan.stem.data() + scan.stem.size();
+    const auto [last, error] = std::from_chars(scan.stem.data(), end, scan.number);
+    if (error == std::errc() && last == end) scans_.push_back(scan);
+  }
+  if (scans_.empty()) throw Error(velodyne.string(), "", "holds no numbered .bin file");
+  std::sort(scans_.begin(), scans_.end(), [](const Scan& a, const Scan& b) { return a.number < b.number; });
+
+  const fs::path absolute = fs::weakly_canonical(fs::absolute(folder / "."));
+  name_ = absolute.has_filename() ? absolute.filename().string() : absolute.parent_path().filename().string();
+  if (!poses_file.empty()) {
+    if (!fs::exists(poses_file)) throw Error(poses_file.string(), "", std::strerror(ENOENT));
+    poses_file_ = poses_file;
+    return;
+  }
+  for (const fs::path& candidate : {folder / "poses.txt", folder / ".." / ".." / "poses" / (name_ + ".txt")}) {
+    if (fs::exists(candidate)) {
+      poses_file_ = candidate;
+      return;
+    }
+  }
+}
+
+const KittiSequence::Scan& KittiSequence::scanAt(int scan) const {
+  if (scan < 0 || scan >= scanCount()) {
+    throw std::out_of_range("scan " + std::to_string(scan) + ": " + folder_.string() + " has scans 0 to " +
+                            std::to_string(scanCount() - 1));
+  }
+  return scans_[static_cast<std::size_t>(scan)];
+}
+
+fs::path KittiSequence::scanPath(int scan) const { return folder_ / "velodyne" / (scanAt(scan).stem + ".bin"); }
+
+fs::path KittiSequence::labelPath(int scan) const { return folder_ / "labels" / (scanAt(scan).stem + ".label"); }
+
+std::vector<LidarPoint> KittiSequence::readScan(int scan) const { return readKittiScan(scanPath(scan)); }
+
+std::vector<std::uint16_t> KittiSequence::readLabels(int scan) const {
+  std::vector<std::uint16_t> classes = readSemanticKittiLabels(labelPath(scan));
+  const std::uintmax_t points = fs::file_size(scanPath(scan)) / sizeof(LidarPoint);
+  if (classes.size() != points) {
+    throw Error(labelPath(scan).string(), "",
+                std::to_string(classes.size()) + " labels, where the scan has " + std::to_string(points) + " points");
+  }
+  return classes;
+}
+
+std::vector<std::size_t> KittiSequence::linesOfScans(const fs::path& path, const std::string& what,
+                                                     std::size_t line_count) const {
+  const bool by_position = line_count <= scans_.size();
+  const std::size_t needed = by_position ? scans_.size() : static_cast<std::size_t>(scans_.back().number) + 1;
+  if (line_count < needed) {
+    throw Error(path.string(), "",
+                std::to_string(line_count) + " " + what + ", where the scans need " + std::to_string(needed));
+  }
+  std::vector<std::size_t> lines;
+  for (std::size_t i = 0; i < scans_.size(); ++i) lines.push_back(by_position ? i : scans_[i].number);
+  return lines;
+}
+
+const std::vector<double>& KittiSequence::stamps() const {
+  if (!stamps_s_.empty()) return stamps_s_;
+  const fs::path path = folder_ / kTimesFile;
+  const std::vector<double> all_s = readStamps(path);
+  for (const std::size_t line : linesOfScans(path, "times", all_s.size())) stamps_s_.push_back(all_s[line]);
+  return stamps_s_;
+}
+
+Eigen::Isometry3d KittiSequence::T_camera_lidar() const { return readKittiCalibration(folder_ / "calib.txt"); }
+
+const std::vector<Eigen::Isometry3d>& KittiSequence::posesLidar() const {
+  if (!T_map_lidar_.empty()) return T_map_lidar_;
+  if (!hasPoses()) {
+    throw Error((folder_ / "poses.txt").string(), "",
+                "no poses: neither this file nor ../../poses/" + name_ + ".txt exists");
+  }
+  const std::vector<Eigen::Isometry3d> camera_poses = readKittiTrajectory(poses_file_);
+  const std::vector<std::size_t> lines = linesOfScans(poses_file_, "poses", camera_poses.size());
+  const Eigen::Isometry3d Tr = T_camera_lidar();
+  for (const std::size_t line : lines) T_map_lidar_.push_back(lidarPose(camera_poses[line], Tr));
+  return T_map_lidar_;
+}
+
+std::unique_ptr<ScanSource> KittiSequence::scans(const std::vector<int>& numbers) const {
+  return std::make_unique<SelectedScans>(*this, numbers);
+}
+
+}  // namespace saw_ndt

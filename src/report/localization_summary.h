@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saw_ndt/evaluation/metrics.h"
+#include "evaluation/statistics.h"
+#include "saw_ndt/drives/drive_localization.h"
+
+namespace saw_ndt {
+
+/// Whether metrics that leave out the first `skip_s` seconds have a scan left. @param stamps_s  of the scans
+bool anyScanAfterSkip(const std::vector<double>& stamps_s, double skip_s);
+
+/// The figures of a run; the fields are those of summary.json.
+struct LocalizationSummary {
+  std::string method;
+  std::size_t scans = 0, accepted = 0, rejected = 0;
+  DurationStatistics total_ms, segment_ms, filter_ms, align_ms;
+  double source_points_mean = 0.0;
+  double iterations_mean = 0.0, evaluations_mean = 0.0;
+  double likelihood_mean = 0.0, nearest_voxel_likelihood_mean = 0.0, non_ground_likelihood_mean = 0.0;
+  double peak_rss_mb = 0.0;  ///< of this process, so far
+  int threads = 0;
+  std::optional<TrajectoryMetrics> metrics;  ///< where a reference exists
+};
+
+/// @param options  of the localizer
+/// @param skip_s   seconds at the start that the metrics leave out; where no scan is left there are none
+LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptions& options, double skip_s);
+
+/// The summary as one JSON object with a line break at its end.
+std::string toJsonText(const LocalizationSummary& summary);
+
+/// Writes trajectory_tum.txt (poses of the base), trajectory_kitti.txt (of the left camera), frames.csv and
+/// summary.json into a folder that exists. @throws Error
+void writeLocalization(const std::filesystem::path& folder, const DriveLocalization& run,
+                       const LocalizationSummary& summary, const Eigen::Isometry3d& T_base_lidar,
+                       const Eigen::Isometry3d& T_camera_lidar);
+
+}  // namespace saw_ndt
