@@ -16,9 +16,9 @@
 #include <thread>
 #include <utility>
 
-#include "saw_ndt/common/error.h"
-#include "common/instruction_set.h"
 #include "common/input_file.h"
+#include "common/instruction_set.h"
+#include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 

@@ -3,12 +3,12 @@
 
 #include "alignment_report.h"
 #include "app_options.h"
+#include "localization/source_voxel_filter.h"
 #include "pose_argument.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/point_cloud_file.h"
-#include "localization/source_voxel_filter.h"
-#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 #include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 
 namespace {
 

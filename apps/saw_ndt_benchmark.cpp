@@ -1,10 +1,10 @@
 #include <iostream>
 
 #include "app_options.h"
+#include "io/staged_output.h"
 #include "output_folder.h"
 #include "report/benchmark_output.h"
 #include "report/benchmark_report.h"
-#include "io/staged_output.h"
 #include "segmentation_options.h"
 #include "stage_progress.h"
 

@@ -1,11 +1,11 @@
 #include <iostream>
 
 #include "app_options.h"
-#include "progress_bar.h"
 #include "common/atomic_output.h"
+#include "progress_bar.h"
+#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
-#include "saw_ndt/drives/drive_map.h"
 #include "segmentation_options.h"
 
 namespace {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app_options.h"
-#include "saw_ndt/common/error.h"
 #include "report/json.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/io/trajectory.h"
 

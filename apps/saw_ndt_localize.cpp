@@ -4,9 +4,9 @@
 #include "output_folder.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
-#include "saw_ndt/drives/kitti_sequence.h"
-#include "saw_ndt/common/error.h"
 #include "report/localization_summary.h"
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "segmentation_options.h"
 
@@ -82,9 +82,10 @@ int main(int argc, char** argv) {
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
     saw_ndt::Localizer localizer(loadMap(map_file, options.method, app.threads()), options);
-    localizer.setInitialPose(app.isGiven("initial-pose") ? saw_ndt::transformOf(initial_pose)
-                                                         : sequence.posesLidar()[static_cast<std::size_t>(selected.front())] *
-                                                               options.T_base_lidar.inverse());
+    localizer.setInitialPose(app.isGiven("initial-pose")
+                                 ? saw_ndt::transformOf(initial_pose)
+                                 : sequence.posesLidar()[static_cast<std::size_t>(selected.front())] *
+                                       options.T_base_lidar.inverse());
 
     saw_ndt::OutputFolder folder(out_dir);
     saw_ndt::ProgressBar progress(selected.size());

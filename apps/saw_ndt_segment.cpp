@@ -2,8 +2,8 @@
 #include <iostream>
 
 #include "app_options.h"
-#include "saw_ndt/common/error.h"
 #include "report/segmentation_score.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/io/point_cloud_file.h"
 #include "saw_ndt/pcl/range_image_segmentation.h"

@@ -5,11 +5,11 @@
 #include "progress_bar.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/trajectory.h"
+#include "scene_files.h"
 #include "simulation/lidar_simulator.h"
 #include "simulation/reference_noise.h"
 #include "simulation/sequence_writer.h"
 #include "simulation/simulated_drive.h"
-#include "scene_files.h"
 
 namespace {
 
@@ -61,7 +61,8 @@ int main(int argc, char** argv) {
   app.addFlag("rolling-shutter", &rolling_shutter,
               "leave the motion during a turn in the scans; otherwise each is seen from its pose");
   app.addOption("rain", &rain_share, "SHARE", "share of the rays that meet a droplet, 0 to 1");
-  app.addOption("objects", &drive_options.object_density, "SHARE", "share of the scene's objects that are there, 0 to 1");
+  app.addOption("objects", &drive_options.object_density, "SHARE",
+                "share of the scene's objects that are there, 0 to 1");
   app.addOption("traffic", &drive_options.traffic_density, "FACTOR", "factor of the scene's traffic, 0 to 10");
   app.addOption("reference-noise", &reference_noise_m, "METRES",
                 "slow error of a GNSS/INS on the poses, one sigma of x and y (z 1.5 times that, 0.3 degrees a metre); "

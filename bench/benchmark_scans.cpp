@@ -1,19 +1,18 @@
 #include "benchmark_scans.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 
-#include "saw_ndt/common/error.h"
-#include "report/pcl_ndt.h"
-#include "saw_ndt/localization/localizer.h"
 #include "localization/source_voxel_filter.h"
+#include "report/pcl_ndt.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/pcl/ground_subsampling.h"
+#include "temporary_folder.h"
 #ifdef SAW_NDT_SIMULATION
 #include "simulation/lidar_simulator.h"
 #include "simulation/sequence_writer.h"
@@ -25,26 +24,6 @@ namespace {
 
 constexpr int kMostScans = 70;
 constexpr char kPreferredSequence[] = "drive_0005";
-
-// A fresh folder that goes with this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() / ("saw_ndt_benchmark_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 struct Drive {
   std::unique_ptr<TemporaryFolder> simulated;

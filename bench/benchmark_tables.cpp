@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "app_options.h"
-#include "saw_ndt/common/error.h"
 #include "common/instruction_set.h"
+#include "saw_ndt/common/error.h"
 
 namespace {
 

@@ -3,8 +3,8 @@
 
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
-#include "report/pcl_ndt.h"
 #include "perturbed_starts.h"
+#include "report/pcl_ndt.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/pcl/cloud_view.h"
 

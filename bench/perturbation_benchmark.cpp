@@ -7,15 +7,15 @@
 
 #include "app_options.h"
 #include "common/stopwatch.h"
+#include "evaluation/statistics.h"
 #include "perturbed_starts.h"
 #include "progress_bar.h"
-#include "saw_ndt/drives/kitti_sequence.h"
+#include "report/pcl_ndt.h"
 #include "saw_ndt/common/geometry.h"
-#include "evaluation/statistics.h"
+#include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/drives/drive_map.h"
-#include "report/pcl_ndt.h"
 
 namespace {
 

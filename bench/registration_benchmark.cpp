@@ -3,10 +3,10 @@
 
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
-#include "report/pcl_ndt.h"
 #include "perturbed_starts.h"
+#include "registration/ndt_evaluation.h"
 #include "registration_case.h"
-#include "repeated_evaluation.h"
+#include "report/pcl_ndt.h"
 
 namespace {
 
@@ -16,10 +16,12 @@ using saw_ndt::RegistrationCase;
 void evaluate(benchmark::State& state, const RegistrationCase& scan, int threads) {
   saw_ndt::AlignmentOptions options = scan.options;
   options.threads = threads;
-  saw_ndt::RepeatedEvaluation evaluation(scan.map, scan.source, options);
+  saw_ndt::NdtEvaluation source;
+  source.begin(scan.map, scan.source, options);
+  const saw_ndt::Evaluation evaluation = source.onFineLevel();
   saw_ndt::NdtDerivatives derivatives;
   for (auto _ : state) {
-    derivatives = evaluation.at(saw_ndt::benchmarkPose());
+    derivatives = evaluation(saw_ndt::benchmarkPose());
     benchmark::DoNotOptimize(derivatives);
   }
   saw_ndt::setTimePer(state, "pair", derivatives.pair_count);

@@ -13,10 +13,10 @@
 #include "app_options.h"
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
-#include "registration_case.h"
-#include "repeated_evaluation.h"
-#include "roofline_kernels.h"
 #include "evaluation/statistics.h"
+#include "registration/ndt_evaluation.h"
+#include "registration_case.h"
+#include "roofline_kernels.h"
 
 namespace {
 
@@ -134,13 +134,15 @@ struct Evaluation {
 Evaluation measureEvaluation(const saw_ndt::RegistrationCase& scan, int threads) {
   saw_ndt::AlignmentOptions options = scan.options;
   options.threads = threads;
-  saw_ndt::RepeatedEvaluation repeated(scan.map, scan.source, options);
+  saw_ndt::NdtEvaluation source;
+  source.begin(scan.map, scan.source, options);
+  const saw_ndt::Evaluation repeated = source.onFineLevel();
   Evaluation evaluation;
   evaluation.points = static_cast<double>(scan.source.size());
   const clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
   for (int i = 0; i < repetitions; ++i) {
     const double start = secondsBy(clock);
-    const auto derivatives = repeated.at(saw_ndt::benchmarkPose());
+    const auto derivatives = repeated(saw_ndt::benchmarkPose());
     evaluation.seconds = std::min(evaluation.seconds, secondsBy(clock) - start);
     evaluation.pairs = static_cast<double>(derivatives.pair_count);
   }

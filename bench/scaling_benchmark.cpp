@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "benchmark_program.h"
-#include "repeated_evaluation.h"
+#include "registration/ndt_evaluation.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 #include "synthetic_city.h"
 
@@ -33,10 +33,13 @@ saw_ndt::AlignmentOptions optionsFor(int threads) {
 void evaluate(benchmark::State& state, const saw_ndt::SourcePoints& source, std::size_t map_voxels, int threads) {
   const saw_ndt::WeightedVoxelMap& map = mapOf(map_voxels);
   const Eigen::Isometry3d T_map_source(Eigen::Translation3d(0.03, 0.02, 0.01));
-  saw_ndt::RepeatedEvaluation evaluation(map, source, optionsFor(threads));
+  const saw_ndt::AlignmentOptions options = optionsFor(threads);
+  saw_ndt::NdtEvaluation ordered;
+  ordered.begin(map, source, options);
+  const saw_ndt::Evaluation evaluation = ordered.onFineLevel();
   saw_ndt::NdtDerivatives derivatives;
   for (auto _ : state) {
-    derivatives = evaluation.at(T_map_source);
+    derivatives = evaluation(T_map_source);
     benchmark::DoNotOptimize(derivatives);
   }
   saw_ndt::setTimePer(state, "pair", derivatives.pair_count);

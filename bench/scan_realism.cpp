@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "app_options.h"
+#include "evaluation/statistics.h"
 #include "progress_bar.h"
 #include "report/scan_statistics.h"
-#include "evaluation/statistics.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/pcl/cloud_view.h"

@@ -6,8 +6,8 @@
 
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
-#include "saw_ndt/localization/localizer.h"
 #include "localization/source_voxel_filter.h"
+#include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 

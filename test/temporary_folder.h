@@ -1,6 +1,5 @@
 #pragma once
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -16,7 +15,7 @@ class TemporaryFolder {
   TemporaryFolder() {
     static std::atomic<int> counter{0};
     path_ = std::filesystem::temp_directory_path() /
-            ("saw_ndt_test_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
+            ("saw_ndt_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
     std::filesystem::create_directories(path_);
   }
   ~TemporaryFolder() {
@@ -44,18 +43,5 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
-
-/// Expects `work()` to throw an Exception whose message holds every one of `parts`.
-template <typename Exception, typename Work>
-void expectThrows(Work work, std::initializer_list<std::string> parts) {
-  try {
-    work();
-    ADD_FAILURE() << "nothing was thrown";
-  } catch (const Exception& error) {
-    for (const std::string& part : parts)
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
-          << "'" << error.what() << "' lacks '" << part << "'";
-  }
-}
 
 }  // namespace saw_ndt

@@ -7,6 +7,9 @@
 
 namespace saw_ndt {
 
+template <>
+const int EigenAlignment<EIGEN_MAX_ALIGN_BYTES>::must_be_that_of_the_saw_ndt_library = EIGEN_MAX_ALIGN_BYTES;
+
 double wrappedAngle(double angle) {
   const double wrapped = std::remainder(angle, 2.0 * kPi);
   return wrapped <= -kPi ? wrapped + 2.0 * kPi : wrapped;
@@ -78,6 +81,18 @@ Vector6d xyzRpyFromTransform(const Eigen::Isometry3d& T) {
   xyz_rpy << T.translation(), std::atan2(R(2, 1), R(2, 2)), std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))),
       std::atan2(R(1, 0), R(0, 0));
   return xyz_rpy;
+}
+
+Eigen::Matrix3d rotationFromEuler(const Eigen::Vector3d& roll_pitch_yaw) {
+  return (Eigen::AngleAxisd(roll_pitch_yaw.x(), Eigen::Vector3d::UnitX()) *
+          Eigen::AngleAxisd(roll_pitch_yaw.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(roll_pitch_yaw.z(), Eigen::Vector3d::UnitZ()))
+      .toRotationMatrix();
+}
+
+Eigen::Vector3d eulerFromRotation(const Eigen::Matrix3d& R) {
+  return {std::atan2(-R(1, 2), R(2, 2)), std::atan2(R(0, 2), std::hypot(R(0, 0), R(0, 1))),
+          std::atan2(-R(0, 1), R(0, 0))};
 }
 
 }  // namespace saw_ndt

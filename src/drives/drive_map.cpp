@@ -19,8 +19,9 @@ class SharedSource {
     if (failure_ || !scans_.next(scan)) return false;
     if (scan.failure.empty() && scan.T_map_lidar) return true;
     // Scans come in order, so that this is the first bad one.
-    failure_ = std::make_exception_ptr(
-        scan.failure.empty() ? Error(scan.name, "", "has no reference pose, which a map is built by") : Error(scan.failure));
+    failure_ = std::make_exception_ptr(scan.failure.empty()
+                                           ? Error(scan.name, "", "has no reference pose, which a map is built by")
+                                           : Error(scan.failure));
     return false;
   }
   void fail(const std::exception_ptr& failure) {

@@ -20,7 +20,8 @@ constexpr char kTimesFile[] = "times.txt";
 
 class SelectedScans : public ScanSource {
  public:
-  SelectedScans(const KittiSequence& sequence, const std::vector<int>& numbers) : sequence_(sequence), numbers_(numbers) {
+  SelectedScans(const KittiSequence& sequence, const std::vector<int>& numbers)
+      : sequence_(sequence), numbers_(numbers) {
     has_stamps_ = fs::exists(sequence.folder() / kTimesFile);
     if (has_stamps_) sequence.stamps();
     if (sequence.hasPoses()) sequence.posesLidar();

@@ -3,21 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saw_ndt/common/geometry.h"
 #include "evaluation/statistics.h"
+#include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
+
+PoseError poseError(const Eigen::Isometry3d& T_map_reference, const Eigen::Isometry3d& T_map_estimate) {
+  return {(T_map_estimate.translation() - T_map_reference.translation()).norm(),
+          degreesFromRadians(std::abs(wrappedAngle(heading(T_map_estimate) - heading(T_map_reference))))};
+}
 
 TrajectoryMetrics evaluatePosePairs(const std::vector<PosePair>& pairs) {
   std::vector<double> position_errors_m;
   std::vector<double> squared_errors_m2;
   std::vector<double> yaw_errors_deg;
   for (const PosePair& pair : pairs) {
-    const double error_m = (pair.T_map_estimate.translation() - pair.T_map_reference.translation()).norm();
-    const double yaw_error = wrappedAngle(heading(pair.T_map_estimate) - heading(pair.T_map_reference));
-    position_errors_m.push_back(error_m);
-    squared_errors_m2.push_back(error_m * error_m);
-    yaw_errors_deg.push_back(degreesFromRadians(std::abs(yaw_error)));
+    const PoseError error = poseError(pair.T_map_reference, pair.T_map_estimate);
+    position_errors_m.push_back(error.position_m);
+    squared_errors_m2.push_back(error.position_m * error.position_m);
+    yaw_errors_deg.push_back(error.yaw_deg);
   }
   TrajectoryMetrics metrics;
   metrics.evaluated_scans = pairs.size();

@@ -4,11 +4,11 @@
 #include <array>
 #include <iomanip>
 
+#include "common/atomic_output.h"
+#include "common/input_file.h"
 #include "io/number_lines.h"
 #include "io/rigid_transform.h"
 #include "saw_ndt/common/error.h"
-#include "common/atomic_output.h"
-#include "common/input_file.h"
 
 namespace saw_ndt {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "saw_ndt/common/error.h"
 #include "common/input_file.h"
+#include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "common/input_file.h"
 #include "io/number_lines.h"
 #include "saw_ndt/common/error.h"
-#include "common/input_file.h"
 
 namespace saw_ndt {
 

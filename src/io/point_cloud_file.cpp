@@ -9,9 +9,9 @@
 #include <new>
 #include <type_traits>
 
+#include "common/atomic_output.h"
 #include "io/pcd_header.h"
 #include "saw_ndt/common/error.h"
-#include "common/atomic_output.h"
 #include "saw_ndt/io/kitti.h"
 
 namespace saw_ndt {

@@ -4,11 +4,11 @@
 #include <iomanip>
 #include <string>
 
+#include "common/atomic_output.h"
 #include "io/number_lines.h"
 #include "io/rigid_transform.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
-#include "common/atomic_output.h"
 
 namespace saw_ndt {
 

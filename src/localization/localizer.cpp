@@ -64,6 +64,11 @@ void LocalizerOptions::check() const {
 Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options)
     : Localizer(alignerTo(std::move(map), options), options) {}
 
+Localizer::Localizer(const std::string& map_file, const LocalizerOptions& options)
+    : Localizer(std::make_shared<const WeightedVoxelMap>(
+                    WeightedVoxelMap::load(map_file, options.method.voxels, options.alignment.threads)),
+                options) {}
+
 Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
     : options_(withMethod(options)),
       preparation_(preparationOptions(options_)),

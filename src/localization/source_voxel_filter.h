@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "saw_ndt/common/labels.h"
+#include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/map/voxel_weighting.h"
 #include "saw_ndt/registration/source_points.h"
 #include "saw_ndt/segmentation/ground_sampler.h"
-#include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
 

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <system_error>
 
-#include "map/crc32.h"
-#include "saw_ndt/common/error.h"
 #include "common/atomic_output.h"
+#include "map/crc32.h"
 #include "map/map_tile.h"
+#include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 namespace {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "map/merged_voxel.h"
 #include "common/threads.h"
+#include "map/merged_voxel.h"
 #include "map/voxel_sums_table.h"
 
 namespace saw_ndt {

@@ -6,9 +6,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/threads.h"
 #include "map/voxel_runs.h"
 #include "saw_ndt/common/error.h"
-#include "common/threads.h"
 
 namespace saw_ndt {
 namespace {

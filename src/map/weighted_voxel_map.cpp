@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "map/map_order.h"
-#include "saw_ndt/common/error.h"
 #include "map/map_file.h"
+#include "map/map_order.h"
 #include "map/map_tile.h"
+#include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 

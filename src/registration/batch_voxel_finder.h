@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "registration/ndt_kernel.h"
-#include "registration/voxel_pairs.h"
 #include "registration/batch_workspace.h"
+#include "registration/ndt_kernel.h"
 #include "registration/ordered_source.h"
+#include "registration/voxel_pairs.h"
 
 namespace saw_ndt {
 

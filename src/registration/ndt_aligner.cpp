@@ -1,49 +1,20 @@
 #include "saw_ndt/registration/ndt_aligner.h"
 
-#include <algorithm>
 #include <stdexcept>
 
+#include "registration/ndt_evaluation.h"
 #include "registration/optimizers.h"
-#include "common/threads.h"
-#include "registration/vectorized_ndt_objective.h"
 
 namespace saw_ndt {
-namespace {
 
-PairWeighting pairWeighting(const WeightedVoxelMap& map, const SourcePoints& source, const AlignmentOptions& options) {
-  return {options.use_weights && map.labelled() && source.labelled, options.mismatch_penalty,
-          map.weighting().confidence};
-}
+struct NdtAligner::Scratch {
+  NdtEvaluation evaluation;
+};
 
-template <typename Objective>
-Objective objectiveOn(const NdtLevel& level, const WeightedVoxelMap& map, const SourcePoints& source,
-                      const AlignmentOptions& options) {
-  return {level, options.neighborhood_search,
-          scoreParameters(options.score_function, options.outlier_ratio, level.resolution()),
-          pairWeighting(map, source, options)};
-}
-
-}  // namespace
-
-Evaluation NdtAligner::evaluationOn(const NdtLevel& level, const WeightedVoxelMap& map, const SourcePoints& source,
-                                    std::size_t stride, const AlignmentOptions& options) {
-  const int threads = threadCount(options.threads);
-  if (options.arithmetic == Arithmetic::DOUBLE) {
-    const auto objective = objectiveOn<NdtObjective>(level, map, source, options);
-    return [this, objective, &source, threads, stride](const Eigen::Isometry3d& T) {
-      return objective.evaluate(source, T, threads, workspace_, stride);
-    };
-  }
-  OrderedSource* points = &ordered_;
-  if (stride > 1) {
-    thinned_.thin(ordered_, stride);
-    points = &thinned_;
-  }
-  const auto objective = objectiveOn<VectorizedNdtObjective>(level, map, source, options);
-  return [this, objective, points, threads](const Eigen::Isometry3d& T) {
-    return objective.evaluate(*points, T, threads, batches_);
-  };
-}
+NdtAligner::NdtAligner() : scratch_(std::make_unique<Scratch>()) {}
+NdtAligner::~NdtAligner() = default;
+NdtAligner::NdtAligner(const NdtAligner&) : NdtAligner() {}
+NdtAligner& NdtAligner::operator=(const NdtAligner&) { return *this; }
 
 AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoints& source,
                                   const Eigen::Isometry3d& guess, const AlignmentOptions& options) {
@@ -54,48 +25,32 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
   result.status = map.empty() ? AlignmentStatus::NO_TARGET : AlignmentStatus::NO_SOURCE;
   if (map.empty() || source.empty()) return result;
 
-  const double resolution = map.resolution();
+  NdtEvaluation& evaluation = scratch_->evaluation;
+  evaluation.begin(map, source, options);
+  const double resolution_m = map.resolution();
   StepLimits limits{options.max_iterations, options.translation_epsilon_m, options.rotation_epsilon_rad,
-                    options.max_step_m * resolution};
-  if (options.arithmetic == Arithmetic::SINGLE || options.evaluate_likelihoods) {
-    ordered_.order(source, resolution, map.weighting().confidence, threadCount(options.threads));
-  }
-
+                    options.max_step_m * resolution_m};
   if (options.optimizer == Optimizer::DAMPED_NEWTON && options.use_coarse_level && !map.coarse().empty()) {
-    const Evaluation evaluate =
-        evaluationOn(map.coarse(), map, source, static_cast<std::size_t>(options.coarse_stride), options);
     StepLimits coarse_limits = limits;
     coarse_limits.max_iterations = options.coarse_max_iterations;
-    coarse_limits.translation_epsilon_m = options.coarse_settled_voxels * resolution;
+    coarse_limits.translation_epsilon_m = options.coarse_settled_voxels * resolution_m;
     coarse_limits.rotation_epsilon_rad = 1.0;
     coarse_limits.max_step_m = options.max_step_m * map.coarse().resolution();
-    dampedNewton(evaluate, coarse_limits, options.least_curvature_share, result);
+    dampedNewton(evaluation.onCoarseLevel(), coarse_limits, options.least_curvature_share, result);
     // A first step that is already small says that the guess is good; the coarse optimum is no better than it.
     if (result.evaluations == 1) result.T_map_source = guess;
     result.iterations = 0;
   }
 
-  const Evaluation evaluate = evaluationOn(map.fine(), map, source, 1, options);
   if (options.optimizer == Optimizer::DAMPED_NEWTON) {
-    dampedNewton(evaluate, limits, options.least_curvature_share, result);
+    dampedNewton(evaluation.onFineLevel(), limits, options.least_curvature_share, result);
   } else {
-    newtonMoreThuente(evaluate, limits, options.line_search_min_step, options.line_search_max_step, result);
+    newtonMoreThuente(evaluation.onFineLevel(), limits, options.line_search_min_step, options.line_search_max_step,
+                      result);
   }
   result.likelihood = result.score / static_cast<double>(source.size());
-  if (options.evaluate_likelihoods) {
-    result.likelihoods = evaluateLikelihoods(map.fine(), ordered_, result.T_map_source,
-                                             AlignmentOptions().outlier_ratio, threadCount(options.threads), batches_);
-  }
+  if (options.evaluate_likelihoods) result.likelihoods = evaluation.likelihoods(result.T_map_source);
   return result;
-}
-
-NdtDerivatives NdtAligner::evaluate(const WeightedVoxelMap& map, const SourcePoints& source,
-                                    const Eigen::Isometry3d& T_map_source, const AlignmentOptions& options) {
-  options.check();
-  if (options.arithmetic == Arithmetic::SINGLE) {
-    ordered_.order(source, map.resolution(), map.weighting().confidence, threadCount(options.threads));
-  }
-  return evaluationOn(map.fine(), map, source, 1, options)(T_map_source);
 }
 
 }  // namespace saw_ndt

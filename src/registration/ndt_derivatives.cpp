@@ -44,16 +44,4 @@ EulerDerivatives eulerDerivatives(const NdtDerivatives& derivatives, const Eigen
   return euler;
 }
 
-Eigen::Matrix3d rotationFromEuler(const Eigen::Vector3d& roll_pitch_yaw) {
-  return (Eigen::AngleAxisd(roll_pitch_yaw.x(), Eigen::Vector3d::UnitX()) *
-          Eigen::AngleAxisd(roll_pitch_yaw.y(), Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(roll_pitch_yaw.z(), Eigen::Vector3d::UnitZ()))
-      .toRotationMatrix();
-}
-
-Eigen::Vector3d eulerFromRotation(const Eigen::Matrix3d& R) {
-  return {std::atan2(-R(1, 2), R(2, 2)), std::atan2(R(0, 2), std::hypot(R(0, 0), R(0, 1))),
-          std::atan2(-R(0, 1), R(0, 0))};
-}
-
 }  // namespace saw_ndt

@@ -36,9 +36,4 @@ struct EulerDerivatives {
 /// @param roll_pitch_yaw  the angles (rad) of the pose at which `derivatives` were taken
 EulerDerivatives eulerDerivatives(const NdtDerivatives& derivatives, const Eigen::Vector3d& roll_pitch_yaw);
 
-/// The rotation Rx(roll) Ry(pitch) Rz(yaw) of PCL's parameters (rad).
-Eigen::Matrix3d rotationFromEuler(const Eigen::Vector3d& roll_pitch_yaw);
-/// The inverse of rotationFromEuler(): roll, pitch within +-pi/2, yaw.
-Eigen::Vector3d eulerFromRotation(const Eigen::Matrix3d& R);
-
 }  // namespace saw_ndt

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "registration/batch_transform.h"
 #include "map/ndt_level.h"
+#include "registration/batch_transform.h"
 
 namespace saw_ndt {
 

@@ -1,13 +1,8 @@
 #pragma once
 
-#include <functional>
-
-#include "saw_ndt/registration/alignment.h"
+#include "registration/ndt_evaluation.h"
 
 namespace saw_ndt {
-
-/// Score and derivatives at a pose.
-using Evaluation = std::function<NdtDerivatives(const Eigen::Isometry3d& T_map_source)>;
 
 /// What ends a run of steps.
 struct StepLimits {

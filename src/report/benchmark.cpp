@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "saw_ndt/common/error.h"
 #include "report/pcl_ndt.h"
-#include "saw_ndt/drives/scan_selection.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/drives/scan_selection.h"
 
 namespace saw_ndt {
 namespace {

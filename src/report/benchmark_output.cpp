@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "saw_ndt/common/error.h"
-#include "report/json.h"
 #include "common/atomic_output.h"
+#include "report/json.h"
+#include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 namespace {

@@ -5,10 +5,10 @@
 #include <iomanip>
 #include <sstream>
 
+#include "evaluation/statistics.h"
 #include "report/map_picture.h"
 #include "report/method_colour.h"
 #include "report/scan_errors.h"
-#include "evaluation/statistics.h"
 
 namespace saw_ndt {
 namespace {

@@ -5,11 +5,11 @@
 #include <sstream>
 #include <system_error>
 
-#include "saw_ndt/common/error.h"
-#include "report/benchmark_pictures.h"
-#include "report/html.h"
 #include "common/atomic_output.h"
 #include "common/input_file.h"
+#include "report/benchmark_pictures.h"
+#include "report/html.h"
+#include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 

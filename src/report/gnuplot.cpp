@@ -1,14 +1,16 @@
 #include "report/gnuplot.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <boost/process/io.hpp>
+#include <boost/process/search_path.hpp>
+#include <boost/process/system.hpp>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <system_error>
 
-#include "saw_ndt/common/error.h"
 #include "common/atomic_output.h"
+#include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 
@@ -60,7 +62,7 @@ struct Scratch {
 
 }  // namespace
 
-bool gnuplotFound() { return std::system("command -v gnuplot > /dev/null 2>&1") == 0; }
+bool gnuplotFound() { return !boost::process::search_path("gnuplot").empty(); }
 
 void drawPicture(const GnuplotPicture& picture, const fs::path& folder) {
   const fs::path script_file = folder / (picture.name + ".gnuplot"), message_file = folder / (picture.name + ".log");
@@ -70,9 +72,10 @@ void drawPicture(const GnuplotPicture& picture, const fs::path& folder) {
   script.stream() << picture.data << drawn(picture, pngTerminal(), kPngScale, folder / (picture.name + ".png"));
   if (!picture.many_points) script.stream() << drawn(picture, "svg", 1.0, folder / (picture.name + ".svg"));
   script.commit();
-  const std::string command = "gnuplot " + inSingleQuotes(script_file.string(), "'\\''") + " > /dev/null 2> " +
-                              inSingleQuotes(message_file.string(), "'\\''");
-  if (std::system(command.c_str()) != 0) throw Error("gnuplot", picture.name, firstLineOf(message_file));
+  namespace bp = boost::process;
+  const int exit_code = bp::system(bp::search_path("gnuplot"), script_file.string(),
+                                   bp::std_in<bp::null, bp::std_out> bp::null, bp::std_err > message_file.string());
+  if (exit_code != 0) throw Error("gnuplot", picture.name, firstLineOf(message_file));
 }
 
 std::string gnuplotQuoted(const std::string& text) {

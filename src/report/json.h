@@ -2,10 +2,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "evaluation/statistics.h"
+#include "report/localization_summary.h"
 #include "saw_ndt/evaluation/metrics.h"
 #include "saw_ndt/evaluation/relative_errors.h"
-#include "report/localization_summary.h"
-#include "evaluation/statistics.h"
 
 // The one public header that needs nlohmann-json; the library's others do without.
 namespace saw_ndt {

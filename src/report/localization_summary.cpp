@@ -6,12 +6,12 @@
 #include <iomanip>
 #include <nlohmann/json.hpp>
 
+#include "common/atomic_output.h"
+#include "common/threads.h"
+#include "io/staged_output.h"
+#include "report/json.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
-#include "common/threads.h"
-#include "report/json.h"
-#include "common/atomic_output.h"
-#include "io/staged_output.h"
 #include "saw_ndt/io/trajectory.h"
 
 namespace saw_ndt {
@@ -31,11 +31,19 @@ std::vector<double> collect(const DriveLocalization& run, Field field) {
   return values;
 }
 
+/// In quotes where a comma or a quote would end it (RFC 4180).
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
 void writeFrames(const std::filesystem::path& path, const DriveLocalization& run) {
   AtomicOutput output(path);
   std::ostream& out = output.stream();
   out << "scan,stamp,accepted,reason,converged,iterations,likelihood,correction_m,correction_deg,source_points,"
-         "segment_ms,filter_ms,align_ms,total_ms,evaluations,unweighted_likelihood,non_ground_likelihood,"
+         "segment_ms,filter_ms,align_ms,total_ms,file,state,evaluations,unweighted_likelihood,non_ground_likelihood,"
          "nearest_voxel_likelihood\n";
   out << std::fixed;
   for (std::size_t i = 0; i < run.results.size(); ++i) {
@@ -45,8 +53,9 @@ void writeFrames(const std::filesystem::path& path, const DriveLocalization& run
         << std::setprecision(6) << r.alignment.likelihood << ',' << r.correction.distance_m << ','
         << degreesFromRadians(r.correction.angle_rad) << ',' << r.source_points << ',' << std::setprecision(3)
         << r.times.segment_ms << ',' << r.times.filter_ms << ',' << r.times.align_ms << ',' << r.times.total_ms << ','
-        << r.alignment.evaluations << ',' << std::setprecision(6) << r.alignment.likelihoods.unweighted << ','
-        << r.alignment.likelihoods.non_ground << ',' << r.alignment.likelihoods.nearest_voxel << '\n';
+        << csvField(run.names[i]) << ',' << toString(r.track.status) << ',' << r.alignment.evaluations << ','
+        << std::setprecision(6) << r.alignment.likelihoods.unweighted << ',' << r.alignment.likelihoods.non_ground
+        << ',' << r.alignment.likelihoods.nearest_voxel << '\n';
   }
   output.commit();
 }
@@ -72,8 +81,10 @@ LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptio
   summary.iterations_mean = mean(collect(run, [](const R& r) { return r.alignment.iterations; }));
   summary.evaluations_mean = mean(collect(run, [](const R& r) { return r.alignment.evaluations; }));
   summary.likelihood_mean = mean(collect(run, [](const R& r) { return r.alignment.likelihood; }));
-  summary.nearest_voxel_likelihood_mean = mean(collect(run, [](const R& r) { return r.alignment.likelihoods.nearest_voxel; }));
-  summary.non_ground_likelihood_mean = mean(collect(run, [](const R& r) { return r.alignment.likelihoods.non_ground; }));
+  summary.nearest_voxel_likelihood_mean =
+      mean(collect(run, [](const R& r) { return r.alignment.likelihoods.nearest_voxel; }));
+  summary.non_ground_likelihood_mean =
+      mean(collect(run, [](const R& r) { return r.alignment.likelihoods.non_ground; }));
   summary.peak_rss_mb = peakResidentMegabytes();
   summary.threads = threadCount(options.alignment.threads);
   const std::vector<double> stamps_s = collect(run, [](const R& r) { return r.stamp_s; });

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "saw_ndt/evaluation/metrics.h"
 #include "evaluation/statistics.h"
 #include "saw_ndt/drives/drive_localization.h"
+#include "saw_ndt/evaluation/metrics.h"
 
 namespace saw_ndt {
 

@@ -5,8 +5,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "saw_ndt/common/labels.h"
 #include "report/method_colour.h"
+#include "saw_ndt/common/labels.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,19 +1,15 @@
 #include "report/scan_errors.h"
 
-#include <cmath>
-
-#include "saw_ndt/common/geometry.h"
+#include "saw_ndt/evaluation/metrics.h"
 
 namespace saw_ndt {
 
 ScanErrors scanErrors(const BenchmarkRun& run, const BenchmarkCell& cell) {
   ScanErrors errors;
   for (std::size_t i = 0; i < cell.run.results.size(); ++i) {
-    const Eigen::Isometry3d& T_map_estimate = cell.run.results[i].T_map_base;
-    const Eigen::Isometry3d& T_map_reference = run.T_map_base[i];
-    errors.position_error_m.push_back((T_map_estimate.translation() - T_map_reference.translation()).norm());
-    errors.yaw_error_deg.push_back(
-        degreesFromRadians(std::abs(wrappedAngle(heading(T_map_estimate) - heading(T_map_reference)))));
+    const PoseError error = poseError(run.T_map_base[i], cell.run.results[i].T_map_base);
+    errors.position_error_m.push_back(error.position_m);
+    errors.yaw_error_deg.push_back(error.yaw_deg);
   }
   return errors;
 }

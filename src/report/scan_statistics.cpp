@@ -9,10 +9,11 @@
 #include <tuple>
 #include <unordered_set>
 
-#include "report/segmentation_score.h"
 #include "evaluation/statistics.h"
+#include "report/segmentation_score.h"
 #include "saw_ndt/map/weighted_map_builder.h"
 #include "saw_ndt/pcl/cloud_view.h"
+#include "segmentation/segmentation_stages.h"
 
 namespace saw_ndt {
 namespace {
@@ -74,7 +75,7 @@ ScanStatistics scanStatistics(const ScanView& scan, const std::vector<std::uint1
   for (const int percent : {5, 25, 50, 75, 95}) {
     figures.emplace_back("range_p" + std::to_string(percent) + "_m", percentile(ranges, percent));
   }
-  const RangeImage& image = segmenter.rangeImage();
+  const RangeImage& image = segmenter.stages().image;
   std::vector<double> ring_points(kRingGroups, 0.0);
   for (const std::int32_t pixel : image.pixelOfPoint()) {
     if (pixel == RangeImage::kNoPixel) continue;

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "saw_ndt/segmentation/scan_segmenter.h"
 #include "saw_ndt/common/scan_view.h"
+#include "saw_ndt/segmentation/scan_segmenter.h"
 
 namespace saw_ndt {
 

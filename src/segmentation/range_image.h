@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/common/sensor_model.h"
 #include "segmentation/ring_index.h"
-#include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
 

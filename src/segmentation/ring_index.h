@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "saw_ndt/common/sensor_model.h"
 #include "saw_ndt/common/scan_view.h"
+#include "saw_ndt/common/sensor_model.h"
 
 namespace saw_ndt {
 

@@ -1,9 +1,9 @@
 #include "saw_ndt/segmentation/scan_segmenter.h"
 
-#include <algorithm>
-
+#include "common/threads.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
+#include "segmentation/segmentation_stages.h"
 
 namespace saw_ndt {
 
@@ -15,17 +15,27 @@ void SegmentationOptions::check() const {
   components.check();
 }
 
-ScanSegmenter::ScanSegmenter(const SegmentationOptions& options) : options_(options) { options_.check(); }
+ScanSegmenter::ScanSegmenter(const SegmentationOptions& options)
+    : stages_((options.check(), std::make_unique<internal::SegmentationStages>())) {
+  stages_->options = options;
+}
+ScanSegmenter::~ScanSegmenter() = default;
+ScanSegmenter::ScanSegmenter(ScanSegmenter&& other) noexcept = default;
+ScanSegmenter& ScanSegmenter::operator=(ScanSegmenter&& other) noexcept = default;
+
+const SegmentationOptions& ScanSegmenter::options() const { return stages_->options; }
 
 void ScanSegmenter::segment(const ScanView& scan, std::vector<StructuralLabel>& labels, int threads) {
-  threads = std::max(threads, 1);
-  image_.project(scan, options_.sensor, radiansFromDegrees(options_.mounting_pitch_deg), threads);
-  ground_detection_.detect(image_, options_.sensor, options_.ground, ground_, threads);
-  component_filter_.label(image_, options_.sensor, ground_, options_.components, pixel_labels_, threads);
+  threads = threadCount(threads);
+  internal::SegmentationStages& s = *stages_;
+  const SegmentationOptions& options = s.options;
+  s.image.project(scan, options.sensor, radiansFromDegrees(options.mounting_pitch_deg), threads);
+  s.ground_detection.detect(s.image, options.sensor, options.ground, s.ground, threads);
+  s.component_filter.label(s.image, options.sensor, s.ground, options.components, s.pixel_labels, threads);
   labels.resize(scan.size);
   const auto points = static_cast<std::ptrdiff_t>(scan.size);
-  const std::int32_t* const pixel_of_point = image_.pixelOfPoint().data();
-  const StructuralLabel* const pixel_labels = pixel_labels_.data();
+  const std::int32_t* const pixel_of_point = s.image.pixelOfPoint().data();
+  const StructuralLabel* const pixel_labels = s.pixel_labels.data();
   StructuralLabel* const point_labels = labels.data();
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (std::ptrdiff_t i = 0; i < points; ++i) {

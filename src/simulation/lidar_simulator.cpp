@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/threads.h"
+#include "saw_ndt/common/geometry.h"
 #include "simulation/beam_constants.h"
 #include "simulation/random_engine.h"
-#include "simulation/return_model.h"
-#include "saw_ndt/common/geometry.h"
-#include "common/threads.h"
 #include "simulation/ray_caster.h"
+#include "simulation/return_model.h"
 
 namespace saw_ndt {
 namespace {

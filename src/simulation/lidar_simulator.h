@@ -14,7 +14,7 @@ namespace saw_ndt {
 /// One turn of a LiDAR. Points come ring after ring, the top ring first, azimuth rising from 0 to 360 degrees within a
 /// ring, as in KITTI's files.
 struct LidarScan {
-  std::vector<LidarPoint> points;       ///< metres, LiDAR frame; intensity: reflectance, 0 to 0.99
+  std::vector<LidarPoint> points;               ///< metres, LiDAR frame; intensity: reflectance, 0 to 0.99
   std::vector<std::uint16_t> semantic_classes;  ///< of SemanticKITTI, one a point
   std::vector<std::uint16_t> rings;             ///< beam of each point, 0 at the top
 };

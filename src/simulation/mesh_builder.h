@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include "simulation/scene.h"
 #include "simulation/random_numbers.h"
+#include "simulation/scene.h"
 #include "simulation/scene_materials.h"
 
 namespace saw_ndt {

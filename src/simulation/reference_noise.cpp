@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "simulation/random_engine.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
+#include "simulation/random_engine.h"
 
 namespace saw_ndt {
 

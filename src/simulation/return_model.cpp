@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "simulation/beam_constants.h"
 #include "saw_ndt/common/geometry.h"
+#include "simulation/beam_constants.h"
 
 namespace saw_ndt {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "saw_ndt/common/geometry.h"
-#include "simulation/random_engine.h"
 #include "simulation/lidar_options.h"
+#include "simulation/random_engine.h"
 #include "simulation/ray_caster.h"
 
 namespace saw_ndt {

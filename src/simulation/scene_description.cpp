@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "saw_ndt/common/error.h"
 #include "common/input_file.h"
+#include "saw_ndt/common/error.h"
 #include "simulation/object_meshes.h"
 
 namespace saw_ndt {

@@ -1,8 +1,10 @@
 #pragma once
 
-#include <sys/wait.h>
-
-#include <cstdlib>
+#include <boost/process/args.hpp>
+#include <boost/process/exe.hpp>
+#include <boost/process/io.hpp>
+#include <boost/process/system.hpp>
+#include <boost/program_options/parsers.hpp>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -18,20 +20,21 @@ struct AppResult {
   std::string errors;  ///< on stderr
 };
 
-/// Runs a program through the shell; `arguments` is shell text. Its stdout goes to `output_file` where one is named.
+/// Runs a program; `arguments` are words as typed into a shell. Its stdout goes to `output_file` where one is named.
 inline AppResult runAppProgram(const std::string& program, const std::string& arguments,
                                const std::string& output_file = "") {
+  namespace bp = boost::process;
   const TemporaryFolder folder;
-  const auto out = output_file.empty() ? folder.path() / "out" : std::filesystem::path(output_file);
-  const auto err = folder.path() / "err";
-  const std::string command = "'" + program + "' " + arguments + " > '" + out.string() + "' 2> '" + err.string() + "'";
-  const int status = std::system(command.c_str());
-  const auto contentOf = [](const std::filesystem::path& path) {
+  const std::string out = output_file.empty() ? (folder.path() / "out").string() : output_file;
+  const std::string err = (folder.path() / "err").string();
+  const int exit_code = bp::system(bp::exe = program, bp::args = boost::program_options::split_unix(arguments),
+                                   bp::std_in<bp::null, bp::std_out> out, bp::std_err > err);
+  const auto contentOf = [](const std::string& path) {
     std::ostringstream content;
     content << std::ifstream(path).rdbuf();
     return content.str();
   };
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output_file.empty() ? contentOf(out) : "", contentOf(err)};
+  return {exit_code, output_file.empty() ? contentOf(out) : "", contentOf(err)};
 }
 
 }  // namespace saw_ndt

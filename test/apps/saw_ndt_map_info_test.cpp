@@ -6,11 +6,11 @@
 
 #include "map/map_fixtures.h"
 #include "real_data.h"
-#include "run_app_program.h"
 #include "report/voxel_cloud.h"
+#include "run_app_program.h"
+#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/point_cloud_file.h"
-#include "saw_ndt/drives/drive_map.h"
 
 namespace saw_ndt {
 namespace {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "real_data.h"
-#include "run_app_program.h"
 #include "report/segmentation_score.h"
+#include "run_app_program.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/point_cloud_file.h"
 #include "segmentation/synthetic_scan.h"

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/error.h"
 #include "temporary_folder.h"
 

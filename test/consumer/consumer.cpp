@@ -6,8 +6,8 @@
 
 #include "report/json.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 #include "saw_ndt/pcl/range_image_segmentation.h"
+#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 
 // Aligns a room's corner with a copy of itself that was moved by 12 cm. Exit code 0: found to within 5 mm.
 int main() {

@@ -1,13 +1,14 @@
-#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/drive_map.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 
+#include "expect_throws.h"
 #include "map_fixtures.h"
 #include "real_data.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {

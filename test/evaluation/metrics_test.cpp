@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/geometry.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,4 +1,3 @@
-#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/kitti.h"
 
 #include <gtest/gtest.h>
@@ -7,9 +6,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "expect_throws.h"
 #include "real_data.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/trajectory.h"
 #include "temporary_folder.h"
 

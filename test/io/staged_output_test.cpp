@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/error.h"
 #include "temporary_folder.h"
 

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "temporary_folder.h"

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "allocation_counter.h"
+#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "synthetic_drive.h"
 #include "temporary_folder.h"

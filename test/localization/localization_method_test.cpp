@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "temporary_folder.h"
+#include "expect_throws.h"
 
 namespace saw_ndt {
 namespace {

@@ -6,10 +6,10 @@
 #include <limits>
 #include <memory>
 
+#include "expect_throws.h"
 #include "map/map_fixtures.h"
 #include "registration/registration_fixtures.h"
 #include "saw_ndt/pcl/cloud_view.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

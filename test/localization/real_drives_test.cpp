@@ -6,9 +6,9 @@
 
 #include "real_data.h"
 #include "report/localization_summary.h"
+#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
-#include "saw_ndt/drives/drive_map.h"
 
 namespace saw_ndt {
 namespace {
@@ -22,7 +22,7 @@ class RealDrive {
         map_(buildDriveMap(*sequence_.scans(selected(map_scans)), {}).build()) {}
 
   DriveLocalization localize(const std::string& method, const std::string& scans, int threads,
-                                LocalizationSummary& summary) const {
+                             LocalizationSummary& summary) const {
     LocalizerOptions options;
     options.method = LocalizationMethod::named(method);
     options.alignment.threads = threads;
@@ -30,7 +30,7 @@ class RealDrive {
     const std::vector<int> numbers = selected(scans);
     localizer.setInitialPose(reference_[static_cast<std::size_t>(numbers.front())]);
     DriveLocalization run = localizeDrive(localizer, *sequence_.scans(numbers));
-    summary = summarize(run, localizer.options(), reference_, sequence_.stamps(), 0.0);
+    summary = summarize(run, localizer.options(), 0.0);
     return run;
   }
 

@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "common/instruction_set.h"
-#include "temporary_folder.h"
+#include "expect_throws.h"
 
 namespace saw_ndt {
 namespace {

@@ -51,7 +51,7 @@ inline double rangeInStreet(const std::vector<Block>& blocks, const Eigen::Vecto
 /// The scan of a spinning LiDAR in the street: ring after ring from the top, azimuth rising, 1 cm of noise along the
 /// ray, nothing beyond 70 m.
 inline std::vector<LidarPoint> scanStreet(const SensorModel& sensor, const Eigen::Isometry3d& T_street_lidar,
-                                                  unsigned seed) {
+                                          unsigned seed) {
   const std::vector<Block> blocks = streetBlocks();
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 0.01);

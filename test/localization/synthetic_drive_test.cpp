@@ -4,9 +4,9 @@
 
 #include <memory>
 
+#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "temporary_folder.h"
 

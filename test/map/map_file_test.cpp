@@ -5,11 +5,12 @@
 #include <cstring>
 #include <limits>
 
+#include "expect_throws.h"
+#include "map/map_tile.h"
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
-#include "map/map_tile.h"
-#include "temporary_folder.h"
 #include "saw_ndt/pcl/cloud_view.h"
+#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

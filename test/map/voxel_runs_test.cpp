@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "map_fixtures.h"
 #include "common/instruction_set.h"
 #include "map/map_tile.h"
+#include "map_fixtures.h"
 #include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {

@@ -1,5 +1,4 @@
 #include "saw_ndt/map/weighted_map_builder.h"
-#include "saw_ndt/pcl/cloud_view.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +7,9 @@
 #include <thread>
 #include <vector>
 
+#include "expect_throws.h"
 #include "map_fixtures.h"
+#include "saw_ndt/pcl/cloud_view.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {

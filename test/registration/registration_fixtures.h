@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "map/ndt_level.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/common/labels.h"
-#include "map/ndt_level.h"
 #include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {

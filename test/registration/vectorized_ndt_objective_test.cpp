@@ -7,9 +7,9 @@
 #include <limits>
 #include <tuple>
 
+#include "common/instruction_set.h"
 #include "map/map_fixtures.h"
 #include "registration/registration_fixtures.h"
-#include "common/instruction_set.h"
 #include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {

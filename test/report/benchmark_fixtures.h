@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "saw_ndt/common/geometry.h"
 #include "report/benchmark.h"
 #include "report/run_record.h"
+#include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
 
@@ -53,12 +53,14 @@ inline BenchmarkRun handMadeRun(const std::string& sequence, MapDrive drive, int
       result.source_points = 1000;
       result.times.total_ms = method.time_ms;
       cell.run.scans.push_back(scan);
+      cell.run.names.push_back(std::to_string(scan) + ".bin");
+      cell.run.T_map_lidar_reference.push_back(run.T_map_base[i]);
       cell.run.results.push_back(result);
     }
     LocalizerOptions options;
     options.method.name = method.name;
     options.alignment.threads = 1;
-    cell.summary = summarize(cell.run, options, run.T_map_base, stamps_s, run.skip_s);
+    cell.summary = summarize(cell.run, options, run.skip_s);
     run.cells.push_back(cell);
   }
   return run;

@@ -6,11 +6,11 @@
 #include <iterator>
 
 #include "benchmark_fixtures.h"
-#include "saw_ndt/common/error.h"
 #include "report/benchmark_pictures.h"
 #include "report/gnuplot.h"
 #include "report/html.h"
 #include "report/method_colour.h"
+#include "saw_ndt/common/error.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {

@@ -4,9 +4,10 @@
 
 #include <atomic>
 
+#include "expect_throws.h"
 #include "localization/synthetic_drive.h"
-#include "saw_ndt/common/error.h"
 #include "report/scan_errors.h"
+#include "saw_ndt/common/error.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
@@ -98,7 +99,7 @@ TEST_F(BenchmarkTest, MethodsTakeTurnsAnotherOneFirstEachTime) {
       return result;
     };
   };
-  const auto runs = localizeByTurns({named('a'), named('b'), named('c')}, drive("first"), {1, 3, 4, 5});
+  const auto runs = localizeByTurns({named('a'), named('b'), named('c')}, *drive("first").scans({1, 3, 4, 5}));
   EXPECT_EQ(order, "abcbcacababc");
   ASSERT_EQ(runs.size(), 3U);
   for (const DriveLocalization& run : runs) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "expect_throws.h"
 #include "localization/synthetic_drive.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
@@ -75,7 +76,7 @@ TEST_F(PclNdtTest, FarCorrectionsAreRejectedAndThePredictionStays) {
 TEST_F(PclNdtTest, AnEmptyScanIsRejected) {
   Localizer localizer = this->localizer();
   localizer.setInitialPose(drive.T_map_lidar[0]);
-    EXPECT_EQ(localizer.localize(ScanView(), 0.0).acceptance, Acceptance::NOT_CONVERGED);
+  EXPECT_EQ(localizer.localize(ScanView(), 0.0).acceptance, Acceptance::NOT_CONVERGED);
 }
 
 TEST_F(PclNdtTest, RefusesWhatCannotWork) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "real_data.h"
-#include "saw_ndt/common/geometry.h"
 #include "report/segmentation_score.h"
+#include "saw_ndt/common/geometry.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 

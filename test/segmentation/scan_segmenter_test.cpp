@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/instruction_set.h"
+#include "segmentation/segmentation_stages.h"
 #include "segmentation/synthetic_scan.h"
 
 namespace saw_ndt {
@@ -154,8 +155,8 @@ TEST_P(BothRules, LabelsDependOnNeitherThreadsNorInstructionSet) {
     ScanSegmenter segmenter(testOptions(GetParam()));
     std::vector<StructuralLabel> expected;
     segmenter.segment(viewOf(*scan), expected);
-    const std::vector<StructuralLabel> expected_pixels = segmenter.pixelLabels();
-    const std::vector<std::int32_t> expected_pixel_of_point = segmenter.rangeImage().pixelOfPoint();
+    const std::vector<StructuralLabel> expected_pixels = segmenter.stages().pixel_labels;
+    const std::vector<std::int32_t> expected_pixel_of_point = segmenter.stages().image.pixelOfPoint();
     EXPECT_EQ(expected.size(), scan->size());
     for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
       limitInstructionSet(set);
@@ -163,8 +164,8 @@ TEST_P(BothRules, LabelsDependOnNeitherThreadsNorInstructionSet) {
         std::vector<StructuralLabel> labels;
         segmenter.segment(viewOf(*scan), labels, threads);
         EXPECT_EQ(labels, expected) << toString(set) << ", " << threads << " threads";
-        EXPECT_EQ(segmenter.pixelLabels(), expected_pixels);
-        EXPECT_EQ(segmenter.rangeImage().pixelOfPoint(), expected_pixel_of_point);
+        EXPECT_EQ(segmenter.stages().pixel_labels, expected_pixels);
+        EXPECT_EQ(segmenter.stages().image.pixelOfPoint(), expected_pixel_of_point);
       }
     }
   }
@@ -178,9 +179,9 @@ TEST(ComponentFilter, FindsWhatFloodFillingFinds) {
   std::vector<StructuralLabel> labels;
   segmenter.segment(viewOf(scan), labels, 3);
   const int columns = sensor.columns;
-  const RangeImage& image = segmenter.rangeImage();
+  const RangeImage& image = segmenter.stages().image;
   const auto isObstacle = [&](int pixel) {
-    return image.range()[pixel] > 0.0F && segmenter.pixelLabels()[pixel] != StructuralLabel::Ground;
+    return image.range()[pixel] > 0.0F && segmenter.stages().pixel_labels[pixel] != StructuralLabel::Ground;
   };
   const auto connected = [&](int first, int second, double apart_deg) {
     const double apart = radiansFromDegrees(apart_deg);
@@ -213,7 +214,8 @@ TEST(ComponentFilter, FindsWhatFloodFillingFinds) {
     const bool kept = points >= 30 || (points >= 5 && bottom_row - top_row + 1 >= 3);
     ++(kept ? large : small);
     for (const int pixel : component) {
-      ASSERT_EQ(segmenter.pixelLabels()[pixel], kept ? StructuralLabel::NonGround : StructuralLabel::Noise) << pixel;
+      ASSERT_EQ(segmenter.stages().pixel_labels[pixel], kept ? StructuralLabel::NonGround : StructuralLabel::Noise)
+          << pixel;
     }
   }
   EXPECT_GT(large, 100);

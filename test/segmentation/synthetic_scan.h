@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/common/sensor_model.h"
 #include "saw_ndt/common/scan_view.h"
+#include "saw_ndt/common/sensor_model.h"
 
 namespace saw_ndt {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "temporary_folder.h"
+#include "expect_throws.h"
 
 namespace saw_ndt {
 namespace {

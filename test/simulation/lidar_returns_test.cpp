@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/lidar_simulator.h"
 #include "simple_scene.h"
+#include "simulation/lidar_simulator.h"
 
 namespace saw_ndt {
 namespace {

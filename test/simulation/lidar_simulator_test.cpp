@@ -6,10 +6,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "expect_throws.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "segmentation/range_image.h"
 #include "simple_scene.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "expect_throws.h"
 #include "simulation/scene_materials.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "expect_throws.h"
 #include "simple_scene.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/geometry.h"
 #include "simple_scene.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

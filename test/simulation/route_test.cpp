@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/geometry.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

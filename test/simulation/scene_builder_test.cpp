@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "expect_throws.h"
 #include "simulation/short_drive.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

@@ -1,5 +1,6 @@
 #include "simulation/scene_description.h"
 
+#include "expect_throws.h"
 #include "saw_ndt/common/error.h"
 #include "temporary_folder.h"
 

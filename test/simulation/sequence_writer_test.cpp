@@ -6,6 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/trajectory.h"

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/geometry.h"
 #include "simulation/short_drive.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

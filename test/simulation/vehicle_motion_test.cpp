@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "expect_throws.h"
 #include "saw_ndt/common/geometry.h"
-#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

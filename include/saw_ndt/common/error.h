@@ -4,10 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// Work on a file failed. what() reads "file: place: reason", or "file: reason" where no place can be named.
-class Error : public std::runtime_error {
+class SAW_NDT_EXPORT Error : public std::runtime_error {
  public:
   /// @param file    the file as the caller named it
   /// @param place   where in it, such as "line 3" or "offset 128"; may be empty

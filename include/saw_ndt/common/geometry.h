@@ -2,9 +2,23 @@
 
 #include <Eigen/Geometry>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
+
+/// Eigen aligns its types, and allocates them, by the vector instructions that the compiler is told to use: a program
+/// that is compiled with -march=native or -mavx does not understand those of a library that is compiled without. Every
+/// file that includes this header refers to the symbol of its own alignment. The library has the symbol of its own
+/// alone, so that such a program does not link instead of computing rubbish.
+template <int kEigenMaxAlignBytes>
+struct EigenAlignment {
+  SAW_NDT_EXPORT static const int must_be_that_of_the_saw_ndt_library;
+};
+namespace {
+[[maybe_unused, gnu::used]] const int* const eigen_alignment_of_this_file =
+    &EigenAlignment<EIGEN_MAX_ALIGN_BYTES>::must_be_that_of_the_saw_ndt_library;
+}  // namespace
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -21,37 +35,42 @@ inline Eigen::Map<const Eigen::Vector3f> positionOf(const LidarPoint& point) {
 }
 
 /// The angle, in radians, wrapped to (-pi, pi].
-double wrappedAngle(double angle);
+SAW_NDT_EXPORT double wrappedAngle(double angle);
 
 /// The cross-product matrix of v: skewSymmetric(v) * w == v.cross(w).
-Eigen::Matrix3d skewSymmetric(const Eigen::Vector3d& v);
+SAW_NDT_EXPORT Eigen::Matrix3d skewSymmetric(const Eigen::Vector3d& v);
 
 /// The transform with its rotation replaced by the nearest rotation matrix. Products of many poses drift away from
 /// orthonormality, and `T1 * T2.inverse() * T1` multiplies that drift: normalize what such a product returns.
-Eigen::Isometry3d normalizedRotation(const Eigen::Isometry3d& T);
+SAW_NDT_EXPORT Eigen::Isometry3d normalizedRotation(const Eigen::Isometry3d& T);
 
 /// Throws std::invalid_argument that names the transform unless it is finite and its rotation is one to within 1e-6.
-void requireRigid(const Eigen::Isometry3d& T, const char* name);
+SAW_NDT_EXPORT void requireRigid(const Eigen::Isometry3d& T, const char* name);
 
 /// The rotation whose axis times angle (rad) is `rotation_vector`.
-Eigen::Matrix3d rotationFromVector(const Eigen::Vector3d& rotation_vector);
+SAW_NDT_EXPORT Eigen::Matrix3d rotationFromVector(const Eigen::Vector3d& rotation_vector);
 
 /// The inverse of rotationFromVector(), of length 0 to pi.
-Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R);
+SAW_NDT_EXPORT Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R);
 
 /// The J for which a body that moves at v (m/s, own frame) and turns at w (rad/s) for t seconds comes to J(w t) v t.
-Eigen::Matrix3d meanRotation(const Eigen::Vector3d& rotation_vector);
+SAW_NDT_EXPORT Eigen::Matrix3d meanRotation(const Eigen::Vector3d& rotation_vector);
 
 /// The angle of a rotation in radians, 0 to pi; exact for small angles too.
-double rotationAngle(const Eigen::Matrix3d& R);
+SAW_NDT_EXPORT double rotationAngle(const Eigen::Matrix3d& R);
 
 /// Yaw in radians: the direction of the body's x axis in the horizontal plane of the parent frame.
-double heading(const Eigen::Isometry3d& T);
+SAW_NDT_EXPORT double heading(const Eigen::Isometry3d& T);
 
 /// The transform that translation (m) and roll, pitch, yaw (rad; R = Rz(yaw) Ry(pitch) Rx(roll)) state.
-Eigen::Isometry3d transformFromXyzRpy(const Vector6d& xyz_rpy);
+SAW_NDT_EXPORT Eigen::Isometry3d transformFromXyzRpy(const Vector6d& xyz_rpy);
 
 /// The inverse of transformFromXyzRpy(): x y z roll pitch yaw.
-Vector6d xyzRpyFromTransform(const Eigen::Isometry3d& T);
+SAW_NDT_EXPORT Vector6d xyzRpyFromTransform(const Eigen::Isometry3d& T);
+
+/// The rotation Rx(roll) Ry(pitch) Rz(yaw) of PCL's parameters (rad).
+SAW_NDT_EXPORT Eigen::Matrix3d rotationFromEuler(const Eigen::Vector3d& roll_pitch_yaw);
+/// The inverse of rotationFromEuler(): roll, pitch within +-pi/2, yaw.
+SAW_NDT_EXPORT Eigen::Vector3d eulerFromRotation(const Eigen::Matrix3d& R);
 
 }  // namespace saw_ndt

@@ -57,7 +57,8 @@ struct ScanView {
   std::size_t size = 0;
   /// Ring number of each point, where the points have one. Rings may be numbered from the top or the bottom.
   PointField rings;
-  /// When each point was measured (s), where that is known; from the stamp of the scan or absolute, as its source has it.
+  /// When each point was measured (s), where that is known; from the stamp of the scan or absolute, as its source has
+  /// it.
   PointField times_s;
   /// Points per row of an organized cloud; ignored where height is 1.
   std::size_t width = 0;

@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// The scan pattern of a spinning LiDAR: how a range image of its scans is laid out.
-struct SensorModel {
+struct SAW_NDT_EXPORT SensorModel {
   /// How error messages call it.
   std::string name;
   /// Width of the range image: pixels per revolution.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/drives/scan_source.h"
 #include "saw_ndt/localization/localizer.h"
 
@@ -11,8 +12,8 @@ namespace saw_ndt {
 
 /// A drive localized scan by scan; one element a scan, in order.
 struct DriveLocalization {
-  std::vector<int> scans;                   ///< numbers
-  std::vector<std::string> names;           ///< see RecordedScan::name
+  std::vector<int> scans;          ///< numbers
+  std::vector<std::string> names;  ///< see RecordedScan::name
   std::vector<LocalizationResult> results;
   std::vector<Eigen::Isometry3d> T_map_lidar_reference;  ///< reference poses; empty where a scan has none
 };
@@ -20,7 +21,8 @@ struct DriveLocalization {
 /// Localizes the scans of a source one after the other. Reading a scan is no part of its times. A scan that cannot be
 /// read is rejected as Acceptance::UNREADABLE.
 /// @param scan_done  called after each scan; may be empty
-DriveLocalization localizeDrive(Localizer& localizer, ScanSource& scans, const std::function<void()>& scan_done = {});
+SAW_NDT_EXPORT DriveLocalization localizeDrive(Localizer& localizer, ScanSource& scans,
+                                               const std::function<void()>& scan_done = {});
 
 /// One way of localizing a scan: that of a Localizer, or one to compare it with.
 using ScanLocalizer = std::function<LocalizationResult(const ScanView& scan, double stamp_s)>;
@@ -29,7 +31,8 @@ using ScanLocalizer = std::function<LocalizationResult(const ScanView& scan, dou
 /// moment of the machine hits all of them; a scan is read once.
 /// @param turn_done  called after each turn, scans times methods in all; may be empty
 /// @return one run a method, in their order
-std::vector<DriveLocalization> localizeByTurns(const std::vector<ScanLocalizer>& localizers, ScanSource& scans,
-                                               const std::function<void()>& turn_done = {});
+SAW_NDT_EXPORT std::vector<DriveLocalization> localizeByTurns(const std::vector<ScanLocalizer>& localizers,
+                                                              ScanSource& scans,
+                                                              const std::function<void()>& turn_done = {});
 
 }  // namespace saw_ndt

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/drives/scan_source.h"
 #include "saw_ndt/map/weighted_map_builder.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
@@ -18,7 +19,7 @@ struct DriveMapOptions {
 /// Adds the scans of a source, segmented and moved by their reference poses, to a new builder.
 /// @param scan_done  called after each scan, from any thread; may be empty
 /// @throws Error where a scan cannot be read or has no reference pose, the first such scan's
-WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,
-                                 const std::function<void()>& scan_done = {});
+SAW_NDT_EXPORT WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,
+                                                const std::function<void()>& scan_done = {});
 
 }  // namespace saw_ndt

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/drives/scan_source.h"
 
 namespace saw_ndt {
@@ -17,9 +18,9 @@ namespace saw_ndt {
 /// Scans are numbered 0 .. scanCount() - 1 in the order of the numbers that are their file names. A times or poses file
 /// with one line a scan belongs to the scans in that order; one with more lines is taken to cover the whole drive, and
 /// a scan has the line of its file's number, from 0. Only the list of scans is read at once; each other file is read
-/// when asked for, so that a drive without calibration or poses can still be used for what does not need them. Not to be
-/// shared by threads.
-class KittiSequence {
+/// when asked for, so that a drive without calibration or poses can still be used for what does not need them. Not to
+/// be shared by threads.
+class SAW_NDT_EXPORT KittiSequence {
  public:
   /// @param folder      the sequence
   /// @param poses_file  its poses; empty: `folder/poses.txt`, then `folder/../../poses/<name>.txt`
@@ -51,8 +52,9 @@ class KittiSequence {
   bool hasPoses() const { return !poses_file_.empty(); }
   /// The poses file; empty where there is none.
   const std::filesystem::path& posesFile() const { return poses_file_; }
-  /// The LiDAR pose of every scan, read by the first call: T_map_lidar = Tr^-1 P Tr with P the camera's pose; the map is the LiDAR frame
-  /// of the drive's first scan. Throws Error where poses or calibration are missing, too few, or no rigid transforms.
+  /// The LiDAR pose of every scan, read by the first call: T_map_lidar = Tr^-1 P Tr with P the camera's pose; the map
+  /// is the LiDAR frame of the drive's first scan. Throws Error where poses or calibration are missing, too few, or no
+  /// rigid transforms.
   const std::vector<Eigen::Isometry3d>& posesLidar() const;
 
   /// The given scans one after the other, with stamps where there is times.txt and reference poses where there are any.

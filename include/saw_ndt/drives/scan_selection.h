@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// Scan numbers that a Python slice selects from 0 .. scan_count - 1, in the slice's order.
@@ -10,6 +12,6 @@ namespace saw_ndt {
 /// `text` is "first:last:step", each part optional, negative numbers counting from the end, `last` excluded; or one
 /// number, "7" or "-1", for that scan alone. Throws std::invalid_argument that quotes `text` where it is neither, where
 /// the step is 0, or where nothing is selected.
-std::vector<int> parseScanSelection(const std::string& text, int scan_count);
+SAW_NDT_EXPORT std::vector<int> parseScanSelection(const std::string& text, int scan_count);
 
 }  // namespace saw_ndt

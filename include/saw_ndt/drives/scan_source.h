@@ -5,22 +5,23 @@
 #include <string>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
 
 /// A scan of a recording and what is known of it.
 struct RecordedScan {
-  int number = 0;                            ///< within the recording, from 0
-  std::string name;                          ///< its own name, for messages, such as velodyne/000012.bin
-  double stamp_s = 0.0;                      ///< time of the scan
-  std::vector<LidarPoint> points;            ///< in the order of the sensor
+  int number = 0;                                ///< within the recording, from 0
+  std::string name;                              ///< its own name, for messages, such as velodyne/000012.bin
+  double stamp_s = 0.0;                          ///< time of the scan
+  std::vector<LidarPoint> points;                ///< in the order of the sensor
   std::optional<Eigen::Isometry3d> T_map_lidar;  ///< reference pose
-  std::string failure;                       ///< why the points could not be read, empty where they could
+  std::string failure;                           ///< why the points could not be read, empty where they could
 };
 
 /// Scans one after the other, of a recording of whatever kind.
-class ScanSource {
+class SAW_NDT_EXPORT ScanSource {
  public:
   virtual ~ScanSource() = default;
 

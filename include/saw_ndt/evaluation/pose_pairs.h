@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/stamped_pose.h"
 
 namespace saw_ndt {
@@ -22,7 +23,7 @@ struct PosePair {
 /// Poses without a reference within kStampTolerance_s are left out, and so are those of the first `skip_s` seconds,
 /// counted from the estimate's first stamp (a pose at exactly skip_s counts). Throws std::invalid_argument, saying why,
 /// where no pair is left, where skip_s is negative, and where a pose or stamp is not finite.
-std::vector<PosePair> matchTrajectories(const std::vector<StampedPose>& reference,
-                                        const std::vector<StampedPose>& estimate, double skip_s);
+SAW_NDT_EXPORT std::vector<PosePair> matchTrajectories(const std::vector<StampedPose>& reference,
+                                                       const std::vector<StampedPose>& estimate, double skip_s);
 
 }  // namespace saw_ndt

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/evaluation/pose_pairs.h"
 
 namespace saw_ndt {
@@ -18,6 +19,6 @@ struct KittiRelativeErrors {
 /// The relative errors as the KITTI development kit defines them: a segment starts at every 10th pose and ends at the
 /// first pose whose path length along the reference exceeds the segment's; its error is the difference of the two
 /// relative poses. Empty where the drive is too short for one segment.
-std::optional<KittiRelativeErrors> kittiRelativeErrors(const std::vector<PosePair>& pairs);
+SAW_NDT_EXPORT std::optional<KittiRelativeErrors> kittiRelativeErrors(const std::vector<PosePair>& pairs);
 
 }  // namespace saw_ndt

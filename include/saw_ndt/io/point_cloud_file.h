@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// Reads a point cloud in metres: a KITTI scan where the name ends in .bin, a PCD file where it ends in .pcd.
@@ -19,7 +21,7 @@ template <typename PointT>
 pcl::PointCloud<PointT> readPointCloud(const std::filesystem::path& path);
 
 /// The names of the fields of such a file, such as x y z label; of a KITTI scan x y z intensity.
-std::vector<std::string> pointCloudFields(const std::filesystem::path& path);
+SAW_NDT_EXPORT std::vector<std::string> pointCloudFields(const std::filesystem::path& path);
 
 /// Writes a compressed binary PCD file, whole or not at all. Throws Error, also for a cloud without points, which the
 /// format cannot hold.
@@ -27,8 +29,8 @@ template <typename PointT>
 void writePcd(const std::filesystem::path& path, const pcl::PointCloud<PointT>& cloud);
 
 /// The same for points of any type, as pcl::toPCLPointCloud2() gives them.
-void writePcd(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
-              const Eigen::Vector4f& sensor_origin = Eigen::Vector4f::Zero(),
-              const Eigen::Quaternionf& sensor_orientation = Eigen::Quaternionf::Identity());
+SAW_NDT_EXPORT void writePcd(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,
+                             const Eigen::Vector4f& sensor_origin = Eigen::Vector4f::Zero(),
+                             const Eigen::Quaternionf& sensor_orientation = Eigen::Quaternionf::Identity());
 
 }  // namespace saw_ndt

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/stamped_pose.h"
 
 namespace saw_ndt {
@@ -27,30 +28,33 @@ struct Trajectory {
 /// or start with '#' are skipped, and what is wrong is an Error that names the line: another number of columns, what is
 /// no finite number, a quaternion whose norm is off 1 by more than 1e-3, a matrix that is no rigid transform to within
 /// 1e-3. A file without poses is an Error too. Rotations are returned normalized.
-Trajectory readTrajectory(const std::filesystem::path& path);
+SAW_NDT_EXPORT Trajectory readTrajectory(const std::filesystem::path& path);
 
 /// Reads stamped poses in TUM format.
-std::vector<StampedPose> readTumTrajectory(const std::filesystem::path& path);
+SAW_NDT_EXPORT std::vector<StampedPose> readTumTrajectory(const std::filesystem::path& path);
 
 /// Reads poses in KITTI format; those of the KITTI benchmark are of the left camera (lidarPose() converts them).
-std::vector<Eigen::Isometry3d> readKittiTrajectory(const std::filesystem::path& path);
+SAW_NDT_EXPORT std::vector<Eigen::Isometry3d> readKittiTrajectory(const std::filesystem::path& path);
 
 /// Reads one stamp (s) a line, as KITTI's times.txt. Throws Error that names the line.
-std::vector<double> readStamps(const std::filesystem::path& path);
+SAW_NDT_EXPORT std::vector<double> readStamps(const std::filesystem::path& path);
 
 /// Writes one stamp (s) a line with 9 decimals. Throws Error.
-void writeStamps(const std::filesystem::path& path, const std::vector<double>& stamps_s);
+SAW_NDT_EXPORT void writeStamps(const std::filesystem::path& path, const std::vector<double>& stamps_s);
 
 /// Writes TUM format: stamps and positions with 9 decimals, quaternions (qw >= 0) with 12. Throws Error.
-void writeTumTrajectory(const std::filesystem::path& path, const std::vector<StampedPose>& trajectory);
+SAW_NDT_EXPORT void writeTumTrajectory(const std::filesystem::path& path, const std::vector<StampedPose>& trajectory);
 
 /// Writes KITTI format with 13 significant digits. Throws Error.
-void writeKittiTrajectory(const std::filesystem::path& path, const std::vector<Eigen::Isometry3d>& poses);
+SAW_NDT_EXPORT void writeKittiTrajectory(const std::filesystem::path& path,
+                                         const std::vector<Eigen::Isometry3d>& poses);
 
 /// The LiDAR's pose in the first LiDAR frame from the camera's in the first camera frame: Tr^-1 P Tr, normalized.
-Eigen::Isometry3d lidarPose(const Eigen::Isometry3d& camera_pose, const Eigen::Isometry3d& T_camera_lidar);
+SAW_NDT_EXPORT Eigen::Isometry3d lidarPose(const Eigen::Isometry3d& camera_pose,
+                                           const Eigen::Isometry3d& T_camera_lidar);
 
 /// The camera's pose in the first camera frame from the LiDAR's in the first LiDAR frame: Tr T Tr^-1, normalized.
-Eigen::Isometry3d cameraPose(const Eigen::Isometry3d& lidar_pose, const Eigen::Isometry3d& T_camera_lidar);
+SAW_NDT_EXPORT Eigen::Isometry3d cameraPose(const Eigen::Isometry3d& lidar_pose,
+                                            const Eigen::Isometry3d& T_camera_lidar);
 
 }  // namespace saw_ndt

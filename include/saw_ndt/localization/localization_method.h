@@ -3,12 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/map/voxel_weighting.h"
 
 namespace saw_ndt {
 
 /// What tells the localization methods apart: which points of a scan take part, and how pairs weigh.
-struct LocalizationMethod {
+struct SAW_NDT_EXPORT LocalizationMethod {
   std::string name;
   bool segment = true;            ///< label the scan; without it every raw point is a source point
   double ground_ratio = 0.5;      ///< rho, the share of ground points kept, in [0, 1]

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <memory>
+#include <string>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/localization/localization_method.h"
 #include "saw_ndt/localization/motion_prediction.h"
 #include "saw_ndt/localization/pose_judge.h"
@@ -13,7 +15,7 @@
 
 namespace saw_ndt {
 
-struct LocalizerOptions {
+struct SAW_NDT_EXPORT LocalizerOptions {
   LocalizationMethod method = LocalizationMethod::named("weighted");
   SegmentationOptions segmentation;
   double source_voxel_size_m = 0.2;  ///< edge of the voxels that thin a scan; 0 keeps every point
@@ -57,13 +59,15 @@ using SourceAligner =
     std::function<AlignmentResult(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted)>;
 
 /// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. It prepares the scan (ScanPreparation),
-/// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). Scratch memory is kept from scan to
-/// scan. One object for each vehicle, not to be shared by threads; the map may be.
-class Localizer {
+/// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). Scratch memory is kept from scan
+/// to scan. One object for each vehicle, not to be shared by threads; the map may be.
+class SAW_NDT_EXPORT Localizer {
  public:
   /// @param map  read with options.method.voxels
   /// @throws std::invalid_argument where an option does not hold, or the map has no labels while the method segments
   Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options);
+  /// Reads a map file, which takes less memory than a map. @throws Error where it is missing or damaged, too
+  Localizer(const std::string& map_file, const LocalizerOptions& options);
   /// With an aligner of one's own.
   /// @throws std::invalid_argument where an option does not hold
   Localizer(SourceAligner aligner, const LocalizerOptions& options);

@@ -1,10 +1,11 @@
 #pragma once
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/localization/track_state.h"
 
 namespace saw_ndt {
 
-struct MotionPredictionOptions {
+struct SAW_NDT_EXPORT MotionPredictionOptions {
   double max_speed_mps = 60.0;       ///< a predicted speed is cut to this (m/s)
   double max_turn_rate_radps = 1.5;  ///< a predicted turn rate is cut to this (rad/s)
 
@@ -15,7 +16,7 @@ struct MotionPredictionOptions {
 /// Follows the track of a vehicle: predicts its next pose from the last two accepted ones and their stamps (Section
 /// III.C of the paper), by constant velocity and turn rate in the vehicle's own frame, a circle where it turns, both
 /// bounded. Before there are two, the last pose.
-class MotionPrediction {
+class SAW_NDT_EXPORT MotionPrediction {
  public:
   explicit MotionPrediction(const MotionPredictionOptions& options = {});
 

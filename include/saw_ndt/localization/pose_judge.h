@@ -2,13 +2,14 @@
 
 #include <Eigen/Geometry>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/localization/track_state.h"
 #include "saw_ndt/registration/alignment.h"
 
 namespace saw_ndt {
 
 /// When a pose is published and stored (Section III.C of the paper).
-struct AcceptanceOptions {
+struct SAW_NDT_EXPORT AcceptanceOptions {
   double min_likelihood = 0.8;       ///< least Likelihoods::unweighted, which weights do not change
   double max_correction_m = 3.0;     ///< greatest distance of the pose from the prediction (m)
   double max_correction_deg = 10.0;  ///< greatest turn from the prediction (degrees)
@@ -23,17 +24,18 @@ struct AcceptanceOptions {
 enum class Acceptance { ACCEPTED, NOT_CONVERGED, LOW_LIKELIHOOD, LARGE_TRANSLATION, LARGE_ROTATION, UNREADABLE };
 
 /// "accepted", "not converged", "low likelihood", "large translation", "large rotation", "unreadable scan"
-const char* toString(Acceptance acceptance);
+SAW_NDT_EXPORT const char* toString(Acceptance acceptance);
 
 /// How far registration moved a pose from its prediction.
 struct PoseCorrection {
   double distance_m = 0.0;
   double angle_rad = 0.0;
 };
-PoseCorrection correctionOf(const Eigen::Isometry3d& T_map_predicted, const Eigen::Isometry3d& T_map_aligned);
+SAW_NDT_EXPORT PoseCorrection correctionOf(const Eigen::Isometry3d& T_map_predicted,
+                                           const Eigen::Isometry3d& T_map_aligned);
 
 /// Judges the result of an alignment.
-class PoseJudge {
+class SAW_NDT_EXPORT PoseJudge {
  public:
   /// @throws std::invalid_argument where an option does not hold
   explicit PoseJudge(const AcceptanceOptions& options = {});

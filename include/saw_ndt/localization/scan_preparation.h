@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <memory>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/map/voxel_weighting.h"
 #include "saw_ndt/registration/source_points.h"
@@ -10,7 +11,7 @@
 
 namespace saw_ndt {
 
-struct ScanPreparationOptions {
+struct SAW_NDT_EXPORT ScanPreparationOptions {
   bool segment = true;               ///< label the points; without it every raw point is a source point
   SegmentationOptions segmentation;  ///< how
   double ground_ratio = 0.5;         ///< rho, the share of the ground points kept, 0 to 1; see GroundSampler
@@ -23,10 +24,10 @@ struct ScanPreparationOptions {
   void check() const;
 };
 
-/// Makes of a scan the source points that are registered: segments it, selects points, brings them into the frame of the
-/// vehicle's base, and thins them to one centroid for every voxel and label (Section III.C of the paper). Scratch memory
-/// is kept from scan to scan. Not to be shared by threads that call it at the same time.
-class ScanPreparation {
+/// Makes of a scan the source points that are registered: segments it, selects points, brings them into the frame of
+/// the vehicle's base, and thins them to one centroid for every voxel and label (Section III.C of the paper). Scratch
+/// memory is kept from scan to scan. Not to be shared by threads that call it at the same time.
+class SAW_NDT_EXPORT ScanPreparation {
  public:
   /// @throws std::invalid_argument where an option does not hold
   explicit ScanPreparation(const ScanPreparationOptions& options);

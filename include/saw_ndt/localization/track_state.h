@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// How far a localizer knows where the vehicle is.
@@ -13,7 +15,7 @@ enum class TrackStatus {
 };
 
 /// "not initialized", "tracking", "coasting"
-const char* toString(TrackStatus status);
+SAW_NDT_EXPORT const char* toString(TrackStatus status);
 
 /// What a localizer knows of the vehicle between two scans.
 struct TrackState {
@@ -24,7 +26,7 @@ struct TrackState {
   bool velocity_known = false;
   Eigen::Vector3d velocity_base_mps = Eigen::Vector3d::Zero();     ///< in the frame of the moving base
   Eigen::Vector3d turn_rate_base_radps = Eigen::Vector3d::Zero();  ///< likewise
-  int rejected_scans = 0;  ///< since the last accepted one
+  int rejected_scans = 0;                                          ///< since the last accepted one
 
   /// Seconds from the last accepted pose to a stamp; nothing where its stamp is not known.
   std::optional<double> timeSinceLast(double at_stamp_s) const {

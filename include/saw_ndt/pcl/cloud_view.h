@@ -51,13 +51,19 @@ ScanView viewOf(const pcl::PointCloud<PointT>& cloud) {
   view.xyz = &first.x;
   constexpr double kNanosecond_s = 1e-9;
   using internal::fieldOf;
-  view.rings = internal::firstKnown({fieldOf(first, [](const auto& point) -> decltype(&point.ring) { return &point.ring; }),
-                                     fieldOf(first, [](const auto& point) -> decltype(&point.channel) { return &point.channel; })});
+  view.rings = internal::firstKnown(
+      {fieldOf(first, [](const auto& point) -> decltype(&point.ring) { return &point.ring; }),
+       fieldOf(first, [](const auto& point) -> decltype(&point.channel) { return &point.channel; })});
   view.times_s = internal::firstKnown(
-      {fieldOf(first, [](const auto& point) -> decltype(&point.time) { return &point.time; }, kNanosecond_s),
-       fieldOf(first, [](const auto& point) -> decltype(&point.t) { return &point.t; }, kNanosecond_s),
-       fieldOf(first, [](const auto& point) -> decltype(&point.timestamp) { return &point.timestamp; }, kNanosecond_s),
-       fieldOf(first, [](const auto& point) -> decltype(&point.offset_time) { return &point.offset_time; }, kNanosecond_s)});
+      {fieldOf(
+           first, [](const auto& point) -> decltype(&point.time) { return &point.time; }, kNanosecond_s),
+       fieldOf(
+           first, [](const auto& point) -> decltype(&point.t) { return &point.t; }, kNanosecond_s),
+       fieldOf(
+           first, [](const auto& point) -> decltype(&point.timestamp) { return &point.timestamp; }, kNanosecond_s),
+       fieldOf(
+           first, [](const auto& point) -> decltype(&point.offset_time) { return &point.offset_time; },
+           kNanosecond_s)});
   return view;
 }
 

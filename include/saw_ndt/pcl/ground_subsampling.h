@@ -11,8 +11,9 @@
 
 namespace saw_ndt {
 
-/// Keeps the share of ground points that GroundSampler tells, and every other point, noise included. Labels come from setLabels(), or else from the `label` field of the points. Compiled for
-/// pcl::PointXYZ, PointXYZI and PointXYZL; for other types include impl/ground_subsampling.hpp.
+/// Keeps the share of ground points that GroundSampler tells, and every other point, noise included. Labels come from
+/// setLabels(), or else from the `label` field of the points. Compiled for pcl::PointXYZ, PointXYZI and PointXYZL; for
+/// other types include impl/ground_subsampling.hpp.
 template <typename PointT>
 class GroundSubsampling : public pcl::FilterIndices<PointT> {
  public:

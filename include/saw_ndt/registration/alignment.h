@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
@@ -40,7 +41,7 @@ enum class Arithmetic {
   DOUBLE,  ///< plain double precision, tens of times slower: to compare with, and for voxels of less than a millimetre
 };
 
-struct AlignmentOptions {
+struct SAW_NDT_EXPORT AlignmentOptions {
   NeighborhoodSearchMethod neighborhood_search = NeighborhoodSearchMethod::DIRECT7;
   ScoreFunction score_function = ScoreFunction::Magnusson;
   double outlier_ratio = 0.55;    ///< expected share of outliers, in (0, 1)
@@ -83,7 +84,7 @@ enum class AlignmentStatus {
 };
 
 /// The status in words: "converged", "iteration limit", ...
-const char* toString(AlignmentStatus status);
+SAW_NDT_EXPORT const char* toString(AlignmentStatus status);
 
 struct AlignmentResult {
   Eigen::Isometry3d T_map_source = Eigen::Isometry3d::Identity();

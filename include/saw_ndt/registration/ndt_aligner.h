@@ -1,38 +1,32 @@
 #pragma once
 
-#include <functional>
+#include <memory>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
 #include "saw_ndt/registration/alignment.h"
-#include "registration/batch_workspace.h"
-#include "registration/ordered_source.h"
+#include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {
 
-/// Registers source points to a map. Holds nothing but scratch memory that calls reuse: not to be shared by threads
-/// that call it at the same time.
-class NdtAligner {
+/// Registers source points to a map. Holds nothing but scratch memory that calls reuse, which copies do not share: not
+/// to be used by several threads at the same time. The map may be shared.
+class SAW_NDT_EXPORT NdtAligner {
  public:
+  NdtAligner();
+  ~NdtAligner();
+  NdtAligner(const NdtAligner& other);
+  NdtAligner& operator=(const NdtAligner& other);
+
   /// @param guess  T_map_source to start from
   /// @throws std::invalid_argument for options that do not hold or a guess that is not finite
   AlignmentResult align(const WeightedVoxelMap& map, const SourcePoints& source, const Eigen::Isometry3d& guess,
                         const AlignmentOptions& options);
 
-  /// Score and derivatives on the fine level at one pose.
-  NdtDerivatives evaluate(const WeightedVoxelMap& map, const SourcePoints& source,
-                          const Eigen::Isometry3d& T_map_source, const AlignmentOptions& options);
-
  private:
-  /// Score and derivatives of every `stride`-th source point on a level; refers to all that it is given.
-  std::function<NdtDerivatives(const Eigen::Isometry3d&)> evaluationOn(const NdtLevel& level,
-                                                                       const WeightedVoxelMap& map,
-                                                                       const SourcePoints& source, std::size_t stride,
-                                                                       const AlignmentOptions& options);
+  struct Scratch;
 
-  OrderedSource ordered_;
-  OrderedSource thinned_;
-  BatchWorkspace batches_;
-  NdtObjective::Workspace workspace_;
+  std::unique_ptr<Scratch> scratch_;
 };
 
 }  // namespace saw_ndt

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// Options of ground subsampling.
-struct GroundSubsamplingOptions {
+struct SAW_NDT_EXPORT GroundSubsamplingOptions {
   /// Share of the ground points that is kept, 0 to 1; rho in section III.C of the paper.
   double ground_ratio = 0.5;
 
@@ -15,7 +17,7 @@ struct GroundSubsamplingOptions {
 
 /// Which ground points of a scan are kept: ground point k, counted from 0 in scan order, where
 /// floor((k + 1) rho) > floor(k rho). A ratio of 0.5 keeps every other one.
-class GroundSampler {
+class SAW_NDT_EXPORT GroundSampler {
  public:
   /// Throws std::invalid_argument where an option is out of its limits.
   explicit GroundSampler(const GroundSubsamplingOptions& options);

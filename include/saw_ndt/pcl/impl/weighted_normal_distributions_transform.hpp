@@ -8,6 +8,7 @@
 #include <string>
 
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/common/geometry.h"
 #include "saw_ndt/map/weighted_map_builder.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/pcl/impl/lazy_kdtree.h"

@@ -1,0 +1,55 @@
+#include "registration/ndt_evaluation.h"
+
+#include "common/threads.h"
+#include "registration/likelihoods.h"
+#include "registration/score_function.h"
+#include "registration/vectorized_ndt_objective.h"
+
+namespace saw_ndt {
+
+template <typename Objective>
+Objective NdtEvaluation::objectiveOn(const NdtLevel& level) const {
+  const PairWeighting weighting{options_->use_weights && map_->labelled() && source_->labelled,
+                                options_->mismatch_penalty, map_->weighting().confidence};
+  return {level, options_->neighborhood_search,
+          scoreParameters(options_->score_function, options_->outlier_ratio, level.resolution()), weighting};
+}
+
+void NdtEvaluation::begin(const WeightedVoxelMap& map, const SourcePoints& source, const AlignmentOptions& options) {
+  map_ = &map;
+  source_ = &source;
+  options_ = &options;
+  if (options.arithmetic == Arithmetic::SINGLE || options.evaluate_likelihoods) {
+    ordered_.order(source, map.resolution(), map.weighting().confidence, threadCount(options.threads));
+  }
+}
+
+Evaluation NdtEvaluation::onFineLevel() { return on(map_->fine(), 1); }
+
+Evaluation NdtEvaluation::onCoarseLevel() {
+  return on(map_->coarse(), static_cast<std::size_t>(options_->coarse_stride));
+}
+
+Evaluation NdtEvaluation::on(const NdtLevel& level, std::size_t stride) {
+  const int threads = threadCount(options_->threads);
+  if (options_->arithmetic == Arithmetic::DOUBLE) {
+    return [this, objective = objectiveOn<NdtObjective>(level), threads, stride](const Eigen::Isometry3d& T) {
+      return objective.evaluate(*source_, T, threads, workspace_, stride);
+    };
+  }
+  OrderedSource* points = &ordered_;
+  if (stride > 1) {
+    thinned_.thin(ordered_, stride);
+    points = &thinned_;
+  }
+  return [this, objective = objectiveOn<VectorizedNdtObjective>(level), points, threads](const Eigen::Isometry3d& T) {
+    return objective.evaluate(*points, T, threads, batches_);
+  };
+}
+
+Likelihoods NdtEvaluation::likelihoods(const Eigen::Isometry3d& T_map_source) {
+  return evaluateLikelihoods(map_->fine(), ordered_, T_map_source, AlignmentOptions().outlier_ratio,
+                             threadCount(options_->threads), batches_);
+}
+
+}  // namespace saw_ndt
