@@ -1,7 +1,5 @@
 #include "app_options.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <boost/program_options/cmdline.hpp>
 #include <boost/program_options/errors.hpp>
@@ -338,7 +336,6 @@ int runApp(int argc, const char* const* argv, AppOptions& app, const std::functi
   try {
     if (app.parse(argc, argv)) {
       instructionSet();                    // throws where the environment asks for one that there is not
-      omp_set_num_threads(app.threads());  // also for parallel loops that are not told how many
       work();
     } else {
       std::cout << app.help();

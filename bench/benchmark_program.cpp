@@ -20,7 +20,7 @@ const std::vector<InstructionSet>& availableInstructionSets() {
 }
 
 const std::vector<int>& benchmarkThreadCounts() {
-  static const std::vector<int> counts = threadCount(0) > 1 ? std::vector<int>{1, 2} : std::vector<int>{1};
+  static const std::vector<int> counts = internal::threadCount(0) > 1 ? std::vector<int>{1, 2} : std::vector<int>{1};
   return counts;
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -43,27 +44,33 @@ double secondsBy(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+// Calls work(thread) in so many threads at once.
+void inThreads(int threads, const std::function<void(int thread)>& work) {
+  std::vector<std::thread> others;
+  for (int thread = 1; thread < threads; ++thread) others.emplace_back(work, thread);
+  work(0);
+  for (std::thread& other : others) other.join();
+}
+
 // Seconds that one call takes a thread where each of `threads` makes it at once, `thread` being 0, 1, ...; the median
 // of the repetitions. Counted is a thread's own time: other programs may hold up one of them.
 double secondsACall(int threads, const std::function<float(int thread)>& call) {
-  static volatile float sink = 0.0F;
+  static std::atomic<float> sink{0.0F};
   const auto secondsOfCalls = [&](int calls, int thread) {
     float sum = 0.0F;
     const double start = secondsBy(CLOCK_THREAD_CPUTIME_ID);
     for (int i = 0; i < calls; ++i) sum += call(thread);
     const double seconds = secondsBy(CLOCK_THREAD_CPUTIME_ID) - start;
-#pragma omp critical
-    sink = sink + sum;
+    sink = sum;
     return seconds;
   };
   int calls = 1;
   while (secondsOfCalls(calls, 0) < kLeastSeconds && calls < (1 << 24)) calls *= 2;
   std::vector<double> seconds;
   for (int i = 0; i < repetitions; ++i) {
-    double sum = 0.0;
-#pragma omp parallel num_threads(threads) reduction(+ : sum)
-    sum += secondsOfCalls(calls, omp_get_thread_num());
-    seconds.push_back(sum / threads / calls);
+    std::vector<double> of_thread(static_cast<std::size_t>(threads));
+    inThreads(threads, [&](int thread) { of_thread[static_cast<std::size_t>(thread)] = secondsOfCalls(calls, thread); });
+    seconds.push_back(saw_ndt::mean(of_thread) / calls);
   }
   return saw_ndt::median(seconds);
 }
@@ -84,8 +91,7 @@ double readBytes(int threads, std::size_t bytes_a_thread) {
   const std::size_t count = bytes_a_thread / sizeof(float) / 128 * 128;
   // Filled by the thread that reads it.
   std::vector<std::vector<float>> values(static_cast<std::size_t>(threads));
-#pragma omp parallel num_threads(threads)
-  values[static_cast<std::size_t>(omp_get_thread_num())].assign(count, 1.0F);
+  inThreads(threads, [&](int thread) { values[static_cast<std::size_t>(thread)].assign(count, 1.0F); });
   const double seconds = secondsACall(
       threads, [&](int t) { return saw_ndt::readValues(values[static_cast<std::size_t>(t)].data(), count); });
   return 1e-9 * static_cast<double>(threads) * static_cast<double>(count * sizeof(float)) / seconds;

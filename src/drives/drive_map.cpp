@@ -3,7 +3,7 @@
 #include <exception>
 #include <mutex>
 
-#include "common/threads.h"
+#include "common/executor.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -24,10 +24,6 @@ class SharedSource {
                                            : Error(scan.failure));
     return false;
   }
-  void fail(const std::exception_ptr& failure) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!failure_) failure_ = failure;
-  }
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }
@@ -45,25 +41,22 @@ WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& optio
   if (options.segmentation) options.segmentation->check();
   WeightedMapBuilder map(options.resolution_m);
   SharedSource source(scans);
-#pragma omp parallel num_threads(threadCount(options.threads))
-  {
+  std::mutex map_mutex;
+  const int threads = internal::threadCount(options.threads);
+  internal::forEachChunkOffline(threads, static_cast<std::size_t>(threads), [&](std::size_t, int) {
     WeightedMapBuilder part(options.resolution_m);
     ScanSegmenter segmenter(options.segmentation.value_or(SegmentationOptions()));
     std::vector<StructuralLabel> labels;
     RecordedScan scan;
-    try {
-      while (source.next(scan)) {
-        const ScanView view = viewOf(scan.points);
-        if (options.segmentation) segmenter.segment(view, labels);
-        part.addScan(view, options.segmentation ? LabelView(labels) : LabelView(), *scan.T_map_lidar);
-        if (scan_done) scan_done();
-      }
-    } catch (...) {
-      source.fail(std::current_exception());
+    while (source.next(scan)) {
+      const ScanView view = viewOf(scan.points);
+      if (options.segmentation) segmenter.segment(view, labels);
+      part.addScan(view, options.segmentation ? LabelView(labels) : LabelView(), *scan.T_map_lidar);
+      if (scan_done) scan_done();
     }
-#pragma omp critical
+    const std::lock_guard<std::mutex> lock(map_mutex);
     map.merge(part);
-  }
+  });
   source.rethrow();
   return map;
 }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/executor.h"
 #include "common/stopwatch.h"
 
 namespace saw_ndt {
@@ -78,6 +79,7 @@ Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
 
 LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
   const internal::Stopwatch total;
+  const internal::HelperSession session(options_.alignment.threads);
   LocalizationResult result;
   result.stamp_s = stamp_s;
   result.T_map_base_predicted = prediction_.predict(stamp_s);

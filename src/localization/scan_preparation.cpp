@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/stopwatch.h"
-#include "common/threads.h"
+#include "common/executor.h"
 #include "localization/source_voxel_filter.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
@@ -42,7 +42,7 @@ const SourcePoints& ScanPreparation::prepare(const ScanView& scan) {
   Parts& parts = *parts_;
   const ScanPreparationOptions& options = parts.options;
   const internal::Stopwatch stopwatch;
-  if (options.segment) parts.segmenter.segment(scan, parts.labels, threadCount(options.threads));
+  if (options.segment) parts.segmenter.segment(scan, parts.labels, internal::threadCount(options.threads));
   parts.segment_ms = options.segment ? stopwatch.milliseconds() : 0.0;
 
   const internal::Stopwatch filter_stopwatch;

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/threads.h"
+#include "common/executor.h"
 #include "map/merged_voxel.h"
 #include "map/voxel_sums_table.h"
 
@@ -106,7 +106,7 @@ template <typename Append>
 std::vector<VoxelStatistics> inParts(std::size_t count, int threads, const Append& append) {
   constexpr std::size_t kLeastPerThread = 1000;
   const std::size_t part_count =
-      std::clamp<std::size_t>(count / kLeastPerThread, 1, static_cast<std::size_t>(threadCount(threads)));
+      std::clamp<std::size_t>(count / kLeastPerThread, 1, static_cast<std::size_t>(internal::threadCount(threads)));
   std::vector<std::vector<VoxelStatistics>> parts(part_count);
   std::exception_ptr failure;
 #pragma omp parallel for num_threads(static_cast <int>(part_count)) schedule(static)

@@ -6,7 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "common/threads.h"
+#include "common/executor.h"
 #include "map/voxel_runs.h"
 #include "saw_ndt/common/error.h"
 
@@ -84,7 +84,7 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
   const PointPlacement placement = placementOf(T_map_scan, origin_.resolution_m);
   const std::size_t most_parts = std::max<std::size_t>(1, points.size / kLeastPointsPerThread);
   const int part_count =
-      static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(threadCount(threads)), most_parts));
+      static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(internal::threadCount(threads)), most_parts));
   if (part_count == 1) {
     origin_.point_count += addRange(points, labels, 0, points.size, placement, table_);
     return;

@@ -51,7 +51,8 @@ BatchVoxelFinder::BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMeth
   pose_ = anchored.pose;
 }
 
-void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) {
+void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_t count,
+                            BatchScratch& scratch) const {
   BatchPoints& points = scratch.points;
   const auto transform = [&] {
     transformBatch(source.x() + first, source.y() + first, source.z() + first, count, pose_, points);
@@ -65,7 +66,8 @@ void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_
   cutIntoUnits(scratch);
 }
 
-void BatchVoxelFinder::findVoxels(BatchScratch& scratch) {
+void BatchVoxelFinder::findVoxels(BatchScratch& scratch) const {
+  VoxelIndex::Cursor cursor;
   const BatchPoints& points = scratch.points;
   const PackedNdtCell* const cells = level_.packedCells().data();
   RunVoxel* voxel = scratch.voxels.voxels;
@@ -73,7 +75,7 @@ void BatchVoxelFinder::findVoxels(BatchScratch& scratch) {
     scratch.voxels.first[run] = static_cast<std::uint32_t>(voxel - scratch.voxels.voxels);
     const auto start = static_cast<std::size_t>(points.run_starts[run]);
     const VoxelCoordinate own(points.voxel[0][start], points.voxel[1][start], points.voxel[2][start]);
-    const std::int32_t* const numbers = level_.index().cell(own + origin_, cursor_);
+    const std::int32_t* const numbers = level_.index().cell(own + origin_, cursor);
     if (numbers == nullptr) continue;
     // Whether a neighbour exists is as good as random: each is written, and kept by moving on. Voxel 0 stands for none.
     for (std::size_t n = 0; n < neighbour_count_; ++n) {

@@ -23,7 +23,8 @@ struct LikelihoodSums {
   std::size_t matched_points = 0;
 };
 
-/// Moves batches of source points to a map level and finds the voxels that each run of points pairs with. One a thread.
+/// Moves batches of source points to a map level and finds the voxels that each run of points pairs with. Threads may
+/// share one.
 class BatchVoxelFinder {
  public:
   /// @param level  is referred to, not copied
@@ -31,7 +32,7 @@ class BatchVoxelFinder {
 
   /// Fills the scratch memory from `count` points of the source, at most kPointsPerBatch.
   /// Puts them in a better order first where runs are short.
-  void find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch);
+  void find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const;
 
  private:
   /// Where a neighbour lies in the index, and in space (m).
@@ -40,7 +41,7 @@ class BatchVoxelFinder {
     float x_m, y_m, z_m;
   };
 
-  void findVoxels(BatchScratch& scratch);
+  void findVoxels(BatchScratch& scratch) const;
   void cutIntoUnits(BatchScratch& scratch) const;
 
   const NdtLevel& level_;
@@ -50,7 +51,6 @@ class BatchVoxelFinder {
   std::size_t neighbour_count_ = 0;
   VoxelCoordinate origin_;
   BatchPose pose_;
-  VoxelIndex::Cursor cursor_;
 };
 
 /// The pose of a batch, and the voxel that its positions are taken from: the one that holds the source's origin.

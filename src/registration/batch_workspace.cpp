@@ -10,8 +10,8 @@ BatchWorkspace::BatchWorkspace(const BatchWorkspace&) {}
 BatchWorkspace& BatchWorkspace::operator=(const BatchWorkspace&) { return *this; }
 
 void BatchWorkspace::prepare(int threads) {
-  while (scratch_of_thread.size() < static_cast<std::size_t>(threads)) {
-    scratch_of_thread.push_back(std::make_unique<BatchScratch>());
+  while (scratch_of_worker.size() < static_cast<std::size_t>(threads)) {
+    scratch_of_worker.push_back(std::make_unique<BatchScratch>());
   }
 }
 

@@ -21,7 +21,7 @@ struct BatchWorkspace {
   /// Makes room for so many threads.
   void prepare(int threads);
 
-  std::vector<std::unique_ptr<BatchScratch>> scratch_of_thread;
+  std::vector<std::unique_ptr<BatchScratch>> scratch_of_worker;
   std::vector<BatchTotals> batch_totals;
   std::vector<LikelihoodSums> batch_likelihoods;
 };

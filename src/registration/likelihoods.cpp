@@ -1,9 +1,8 @@
 #include "registration/likelihoods.h"
 
-#include <omp.h>
-
 #include <algorithm>
 
+#include "common/executor.h"
 #include "registration/batch_voxel_finder.h"
 #include "registration/pair_parameters.h"
 
@@ -27,22 +26,17 @@ Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, co
   const PairParameters parameters =
       pairParameters(level, NeighborhoodSearchMethod::DIRECT7,
                      scoreParameters(ScoreFunction::Magnusson, outlier_ratio, level.resolution()), {});
+  const BatchVoxelFinder finder(level, NeighborhoodSearchMethod::DIRECT7, T_map_source);
   workspace.prepare(threads);
   workspace.batch_likelihoods.resize((source.size() + kPointsPerBatch - 1) / kPointsPerBatch);
-  const auto batch_count = static_cast<std::ptrdiff_t>(workspace.batch_likelihoods.size());
-#pragma omp parallel num_threads(threads)
-  {
-    BatchScratch& scratch = *workspace.scratch_of_thread[static_cast<std::size_t>(omp_get_thread_num())];
-    BatchVoxelFinder finder(level, NeighborhoodSearchMethod::DIRECT7, T_map_source);
-#pragma omp for schedule(dynamic)
-    for (std::ptrdiff_t b = 0; b < batch_count; ++b) {
-      const std::size_t first = static_cast<std::size_t>(b) * kPointsPerBatch;
-      finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
-      workspace.batch_likelihoods[static_cast<std::size_t>(b)] = {
-          evaluateScores(scratch.points, source.nonGround() + first, scratch.units, scratch.voxels, parameters),
-          matchedPoints(scratch)};
-    }
-  }
+  internal::forEachChunk(threads, workspace.batch_likelihoods.size(), [&](std::size_t batch, int worker) {
+    BatchScratch& scratch = *workspace.scratch_of_worker[static_cast<std::size_t>(worker)];
+    const std::size_t first = batch * kPointsPerBatch;
+    finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
+    workspace.batch_likelihoods[batch] = {
+        evaluateScores(scratch.points, source.nonGround() + first, scratch.units, scratch.voxels, parameters),
+        matchedPoints(scratch)};
+  });
   LikelihoodSums total;
   for (const LikelihoodSums& sums : workspace.batch_likelihoods) {
     total.scores.all += sums.scores.all;

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "common/executor.h"
 #include "registration/ndt_evaluation.h"
 #include "registration/optimizers.h"
 
@@ -25,6 +26,7 @@ AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoint
   result.status = map.empty() ? AlignmentStatus::NO_TARGET : AlignmentStatus::NO_SOURCE;
   if (map.empty() || source.empty()) return result;
 
+  const internal::HelperSession session(options.threads);
   NdtEvaluation& evaluation = scratch_->evaluation;
   evaluation.begin(map, source, options);
   const double resolution_m = map.resolution();

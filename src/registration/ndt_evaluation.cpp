@@ -1,6 +1,6 @@
 #include "registration/ndt_evaluation.h"
 
-#include "common/threads.h"
+#include "common/executor.h"
 #include "registration/likelihoods.h"
 #include "registration/score_function.h"
 #include "registration/vectorized_ndt_objective.h"
@@ -20,7 +20,7 @@ void NdtEvaluation::begin(const WeightedVoxelMap& map, const SourcePoints& sourc
   source_ = &source;
   options_ = &options;
   if (options.arithmetic == Arithmetic::SINGLE || options.evaluate_likelihoods) {
-    ordered_.order(source, map.resolution(), map.weighting().confidence, threadCount(options.threads));
+    ordered_.order(source, map.resolution(), map.weighting().confidence, internal::threadCount(options.threads));
   }
 }
 
@@ -31,7 +31,7 @@ Evaluation NdtEvaluation::onCoarseLevel() {
 }
 
 Evaluation NdtEvaluation::on(const NdtLevel& level, std::size_t stride) {
-  const int threads = threadCount(options_->threads);
+  const int threads = internal::threadCount(options_->threads);
   if (options_->arithmetic == Arithmetic::DOUBLE) {
     return [this, objective = objectiveOn<NdtObjective>(level), threads, stride](const Eigen::Isometry3d& T) {
       return objective.evaluate(*source_, T, threads, workspace_, stride);
@@ -49,7 +49,7 @@ Evaluation NdtEvaluation::on(const NdtLevel& level, std::size_t stride) {
 
 Likelihoods NdtEvaluation::likelihoods(const Eigen::Isometry3d& T_map_source) {
   return evaluateLikelihoods(map_->fine(), ordered_, T_map_source, AlignmentOptions().outlier_ratio,
-                             threadCount(options_->threads), batches_);
+                             internal::threadCount(options_->threads), batches_);
 }
 
 }  // namespace saw_ndt

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/executor.h"
 #include "registration/voxel_pairs.h"
 
 namespace saw_ndt {
@@ -124,13 +125,11 @@ NdtDerivatives NdtObjective::evaluate(const SourcePoints& source, const Eigen::I
   const std::size_t block_size = kPointsPerBlock * stride;
   const std::size_t block_count = (source.size() + block_size - 1) / block_size;
   workspace.blocks.assign(block_count, NdtDerivatives());
-  const auto signed_count = static_cast<std::ptrdiff_t>(block_count);
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::ptrdiff_t b = 0; b < signed_count; ++b) {
-    const std::size_t first = static_cast<std::size_t>(b) * block_size;
+  internal::forEachChunk(threads, block_count, [&](std::size_t b, int) {
+    const std::size_t first = b * block_size;
     (this->*block)(source, T_map_source, first, std::min(first + block_size, source.size()), stride,
-                   workspace.blocks[static_cast<std::size_t>(b)]);
-  }
+                   workspace.blocks[b]);
+  });
   for (const NdtDerivatives& sums : workspace.blocks) {
     total.score += sums.score;
     total.force += sums.force;

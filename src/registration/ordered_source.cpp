@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/executor.h"
 #include "registration/batch_transform.h"
 
 namespace saw_ndt {
@@ -76,45 +77,35 @@ void OrderedSource::order(const SourcePoints& source, double resolution_m, const
   }
   const auto begin_of = [this](std::size_t part) { return part * size_ / kParts; };
   std::array<std::size_t, kParts> non_ground_counts{};
-#pragma omp parallel num_threads(threads)
-  {
-#pragma omp for schedule(static)
-    for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(kParts); ++p) {
-      const auto part = static_cast<std::size_t>(p);
-      const std::size_t begin = begin_of(part), end = begin_of(part + 1);
-      findColumns(source.x.data() + begin, source.y.data() + begin, end - begin, inverse_column_m,
-                  columns_.data() + begin);
-      std::uint32_t* const counts = places_.data() + part * kColumnKeys;
-      for (std::size_t i = begin; i < end; ++i) ++counts[columns_[i]];
-    }
-#pragma omp single
-    {
-      std::uint32_t begin = 0;
-      for (std::size_t column = 0; column < kColumnKeys; ++column) {
-        for (std::size_t part = 0; part < kParts; ++part) {
-          std::uint32_t& place = places_[part * kColumnKeys + column];
-          begin += std::exchange(place, begin);
-        }
-      }
-    }
-#pragma omp for schedule(static)
-    for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(kParts); ++p) {
-      const auto part = static_cast<std::size_t>(p);
-      std::uint32_t* const places = places_.data() + part * kColumnKeys;
-      std::size_t non_ground_count = 0;
-      for (std::size_t i = begin_of(part); i < begin_of(part + 1); ++i) {
-        const std::uint32_t place = places[columns_[i]]++;
-        const bool non_ground = source.label[i] != static_cast<std::uint8_t>(StructuralLabel::Ground);
-        x_[place] = source.x[i];
-        y_[place] = source.y[i];
-        z_[place] = source.z[i];
-        confidence_[place] = confidence_of_label[source.label[i]];
-        non_ground_[place] = non_ground ? 1.0F : 0.0F;
-        non_ground_count += non_ground ? 1 : 0;
-      }
-      non_ground_counts[part] = non_ground_count;
+  internal::forEachChunk(threads, kParts, [&](std::size_t part, int) {
+    const std::size_t begin = begin_of(part), end = begin_of(part + 1);
+    findColumns(source.x.data() + begin, source.y.data() + begin, end - begin, inverse_column_m,
+                columns_.data() + begin);
+    std::uint32_t* const counts = places_.data() + part * kColumnKeys;
+    for (std::size_t i = begin; i < end; ++i) ++counts[columns_[i]];
+  });
+  std::uint32_t next = 0;
+  for (std::size_t column = 0; column < kColumnKeys; ++column) {
+    for (std::size_t part = 0; part < kParts; ++part) {
+      std::uint32_t& place = places_[part * kColumnKeys + column];
+      next += std::exchange(place, next);
     }
   }
+  internal::forEachChunk(threads, kParts, [&](std::size_t part, int) {
+    std::uint32_t* const places = places_.data() + part * kColumnKeys;
+    std::size_t non_ground_count = 0;
+    for (std::size_t i = begin_of(part); i < begin_of(part + 1); ++i) {
+      const std::uint32_t place = places[columns_[i]]++;
+      const bool non_ground = source.label[i] != static_cast<std::uint8_t>(StructuralLabel::Ground);
+      x_[place] = source.x[i];
+      y_[place] = source.y[i];
+      z_[place] = source.z[i];
+      confidence_[place] = confidence_of_label[source.label[i]];
+      non_ground_[place] = non_ground ? 1.0F : 0.0F;
+      non_ground_count += non_ground ? 1 : 0;
+    }
+    non_ground_counts[part] = non_ground_count;
+  });
   non_ground_count_ = std::accumulate(non_ground_counts.begin(), non_ground_counts.end(), std::size_t{0});
 }
 

@@ -1,11 +1,10 @@
 #include "registration/vectorized_ndt_objective.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <functional>
 #include <iterator>
 
+#include "common/executor.h"
 #include "registration/batch_voxel_finder.h"
 #include "registration/pair_parameters.h"
 
@@ -39,21 +38,16 @@ NdtDerivatives VectorizedNdtObjective::evaluate(OrderedSource& source, const Eig
   NdtDerivatives derivatives;
   if (!VoxelPairs::reachable(level_, T_map_source)) return derivatives;
   const PairParameters parameters = pairParameters(level_, method_, score_, weighting_);
+  const BatchVoxelFinder finder(level_, method_, T_map_source);
   workspace.prepare(threads);
   workspace.batch_totals.resize((source.size() + kPointsPerBatch - 1) / kPointsPerBatch);
-  const auto batch_count = static_cast<std::ptrdiff_t>(workspace.batch_totals.size());
-#pragma omp parallel num_threads(threads)
-  {
-    BatchScratch& scratch = *workspace.scratch_of_thread[static_cast<std::size_t>(omp_get_thread_num())];
-    BatchVoxelFinder finder(level_, method_, T_map_source);
-#pragma omp for schedule(dynamic)
-    for (std::ptrdiff_t b = 0; b < batch_count; ++b) {
-      const std::size_t first = static_cast<std::size_t>(b) * kPointsPerBatch;
-      finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
-      workspace.batch_totals[static_cast<std::size_t>(b)] =
-          evaluatePairs(scratch.points, source.confidence() + first, scratch.units, scratch.voxels, parameters);
-    }
-  }
+  internal::forEachChunk(threads, workspace.batch_totals.size(), [&](std::size_t batch, int worker) {
+    BatchScratch& scratch = *workspace.scratch_of_worker[static_cast<std::size_t>(worker)];
+    const std::size_t first = batch * kPointsPerBatch;
+    finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
+    workspace.batch_totals[batch] =
+        evaluatePairs(scratch.points, source.confidence() + first, scratch.units, scratch.voxels, parameters);
+  });
   BatchTotals total{};
   for (const BatchTotals& batch : workspace.batch_totals) add(batch, total);
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/atomic_output.h"
-#include "common/threads.h"
+#include "common/executor.h"
 #include "io/staged_output.h"
 #include "report/json.h"
 #include "saw_ndt/common/error.h"
@@ -86,7 +86,7 @@ LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptio
   summary.non_ground_likelihood_mean =
       mean(collect(run, [](const R& r) { return r.alignment.likelihoods.non_ground; }));
   summary.peak_rss_mb = peakResidentMegabytes();
-  summary.threads = threadCount(options.alignment.threads);
+  summary.threads = internal::threadCount(options.alignment.threads);
   const std::vector<double> stamps_s = collect(run, [](const R& r) { return r.stamp_s; });
   if (!run.T_map_lidar_reference.empty() && anyScanAfterSkip(stamps_s, skip_s)) {
     const Eigen::Isometry3d T_lidar_base = options.T_base_lidar.inverse();

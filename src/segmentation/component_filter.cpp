@@ -1,12 +1,11 @@
 #include "segmentation/component_filter.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <bitset>
 #include <cmath>
 #include <utility>
 
+#include "common/executor.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/component_loops.h"
@@ -36,28 +35,25 @@ void ComponentFilter::label(const RangeImage& image, const SensorModel& sensor, 
   prepare(image, threads);
   labels.resize(image.range().size());
   const int rows = image.rows();
-  const auto first_row = [&](int band) { return static_cast<int>(static_cast<std::ptrdiff_t>(rows) * band / threads); };
-#pragma omp parallel num_threads(threads)
-  {
-    // Bands of rows, one a thread, are joined within first and with one another at last.
-#pragma omp for schedule(static)
-    for (int band = 0; band < threads; ++band) {
-      RowBuffers& buffers = buffers_[band];
-      for (int row = first_row(band); row < first_row(band + 1); ++row) {
-        findRuns(row, image, sensor, ground, options, buffers);
-        if (row > first_row(band)) joinRowAbove(row, buffers);
-      }
+  // Bands of rows are joined within first and with one another at last. Small ones wait less for each other.
+  constexpr int kBandsPerThread = 4;
+  const int bands = threads == 1 ? 1 : std::min(rows, kBandsPerThread * threads);
+  const auto first_row = [&](int band) { return static_cast<int>(static_cast<std::ptrdiff_t>(rows) * band / bands); };
+  internal::forEachChunk(threads, static_cast<std::size_t>(bands), [&](std::size_t chunk, int worker) {
+    const int band = static_cast<int>(chunk);
+    RowBuffers& buffers = buffers_[worker];
+    for (int row = first_row(band); row < first_row(band + 1); ++row) {
+      findRuns(row, image, sensor, ground, options, buffers);
+      if (row > first_row(band)) joinRowAbove(row, buffers);
     }
-#pragma omp single
-    for (int band = 1; band < threads; ++band) {
-      const int row = first_row(band);
-      if (row > 0 && row < first_row(band + 1)) joinRowAbove(row, buffers_[band]);
+  });
+  for (int band = 1; band < bands; ++band) joinRowAbove(first_row(band), buffers_[0]);
+  internal::forEachChunk(threads, static_cast<std::size_t>(bands), [&](std::size_t chunk, int worker) {
+    const int band = static_cast<int>(chunk);
+    for (int row = first_row(band); row < first_row(band + 1); ++row) {
+      writeLabels(row, ground, options, buffers_[worker], labels);
     }
-#pragma omp for schedule(static)
-    for (int row = 0; row < rows; ++row) {
-      writeLabels(row, ground, options, buffers_[omp_get_thread_num()], labels);
-    }
-  }
+  });
 }
 
 void ComponentFilter::prepare(const RangeImage& image, int threads) {

@@ -1,10 +1,9 @@
 #include "segmentation/ground_detection.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "common/executor.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/ground_loops.h"
@@ -49,17 +48,19 @@ void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor,
   }
   ground.resize(image.range().size());
   constexpr std::size_t kColumnsAtOnce = 512;
-#pragma omp parallel num_threads(threads)
-  {
-#pragma omp for schedule(static)
-    for (std::size_t column = 0; column < columns; column += kColumnsAtOnce) {
-      grow(image, options, column, std::min(kColumnsAtOnce, columns - column));
+  internal::forEachChunk(threads, (columns + kColumnsAtOnce - 1) / kColumnsAtOnce, [&](std::size_t chunk, int) {
+    const std::size_t column = chunk * kColumnsAtOnce;
+    grow(image, options, column, std::min(kColumnsAtOnce, columns - column));
+  });
+  constexpr int kRowsAtOnce = 8;
+  const int rows = image.rows();
+  const auto row_chunks = static_cast<std::size_t>((rows + kRowsAtOnce - 1) / kRowsAtOnce);
+  internal::forEachChunk(threads, row_chunks, [&](std::size_t chunk, int worker) {
+    const int first = static_cast<int>(chunk) * kRowsAtOnce;
+    for (int row = first; row < std::min(first + kRowsAtOnce, rows); ++row) {
+      settle(image, row, options.smooths, neighbour_sums_[worker], ground);
     }
-#pragma omp for schedule(static)
-    for (int row = 0; row < image.rows(); ++row) {
-      settle(image, row, options.smooths, neighbour_sums_[omp_get_thread_num()], ground);
-    }
-  }
+  });
 }
 
 void GroundDetection::detectByInclination(const RangeImage& image, const SensorModel& sensor,

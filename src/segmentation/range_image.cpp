@@ -1,13 +1,12 @@
 #include "segmentation/range_image.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
+#include "common/executor.h"
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/range_image_loops.h"
 
@@ -75,30 +74,33 @@ void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double
     returns.nearest.resize(static_cast<std::size_t>(columns_) + 1);
     returns.count.resize(static_cast<std::size_t>(columns_) + 1);
   }
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
-  for (int row = 0; row < rows_; ++row) placeRun(run_of_row_[row], pixel_returns_[omp_get_thread_num()]);
+  constexpr std::size_t kRowsAtOnce = 4;
+  const std::size_t rows = run_of_row_.size();
+  internal::forEachChunk(threads, (rows + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::size_t chunk, int worker) {
+    const std::size_t end = std::min(rows, (chunk + 1) * kRowsAtOnce);
+    for (std::size_t row = chunk * kRowsAtOnce; row < end; ++row) placeRun(run_of_row_[row], pixel_returns_[worker]);
+  });
 }
 
 void RangeImage::measure(const ScanView& scan, double mounting_pitch, int threads) {
   constexpr std::size_t kBlock = PointMeasurements::kBlock;
-  const auto blocks = static_cast<std::ptrdiff_t>((scan.size + kBlock - 1) / kBlock);
+  const std::size_t blocks = (scan.size + kBlock - 1) / kBlock;
   points_.column.resize(scan.size);
   points_.range.resize(scan.size);
   points_.horizontal_range.resize(scan.size);
   points_.height.resize(scan.size);
-  points_.spans.resize(static_cast<std::size_t>(blocks));
+  points_.spans.resize(blocks);
   const ProjectionGeometry geometry = {static_cast<float>(columns_) / static_cast<float>(2.0 * kPi),
                                        static_cast<float>(columns_ - 1), static_cast<float>(std::cos(mounting_pitch)),
                                        static_cast<float>(std::sin(mounting_pitch))};
-  constexpr std::ptrdiff_t kBlocksAtOnce = 32;
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-  for (std::ptrdiff_t block = 0; block < blocks; block += kBlocksAtOnce) {
-    const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
+  constexpr std::size_t kBlocksAtOnce = 32;
+  internal::forEachChunk(threads, (blocks + kBlocksAtOnce - 1) / kBlocksAtOnce, [&](std::size_t chunk, int) {
+    const std::size_t begin = chunk * kBlocksAtOnce * kBlock;
     const std::size_t count = std::min(scan.size - begin, kBlocksAtOnce * kBlock);
     measurePoints(count, scan.stride, scan.point(begin), geometry,
                   {points_.column.data() + begin, points_.range.data() + begin, points_.horizontal_range.data() + begin,
-                   points_.height.data() + begin, points_.spans.data() + block});
-  }
+                   points_.height.data() + begin, points_.spans.data() + chunk * kBlocksAtOnce});
+  });
 }
 
 void RangeImage::placeRun(const RowRun& run, PixelReturns& returns) {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "common/threads.h"
+#include "common/executor.h"
 #include "saw_ndt/common/geometry.h"
 #include "simulation/beam_constants.h"
 #include "simulation/random_engine.h"
@@ -81,7 +81,7 @@ class LidarSimulator::Parts {
 
 LidarSimulator::Parts::Parts(const Scene& scene, const LidarOptions& lidar_options, int threads)
     : options((lidar_options.check(), lidar_options)),
-      threads_(threadCount(threads)),
+      threads_(internal::threadCount(threads)),
       caster_(scene),
       model_(options, scene.materials),
       beams_(beamConstants(options)),
@@ -179,17 +179,13 @@ LidarScan LidarSimulator::Parts::scan(const VehicleMotion& motion, int scan) {
   RandomEngine random = seededEngine({options.seed, static_cast<std::uint64_t>(scan), 0, kPhase});
   const double phase = boost::random::uniform_01<double>()(random);
   const int rings = options.sensor.rows();
-#pragma omp parallel num_threads(threads_)
-  {
-#pragma omp for schedule(dynamic, 1)
-    for (int ring = 0; ring < rings; ++ring) fireRing(poses, scan, ring, phase);
-#pragma omp for schedule(dynamic, 1)
-    for (int ring = 0; ring < rings; ++ring) {
-      RandomEngine ring_random =
-          seededEngine({options.seed, static_cast<std::uint64_t>(scan), static_cast<std::uint64_t>(ring), kReturns});
-      model_.measure(rings_, ring, ring_random, &returns_[ring]);
-    }
-  }
+  const auto ring_count = static_cast<std::size_t>(rings);
+  internal::forEachChunkOffline(threads_, ring_count,
+                                [&](std::size_t ring, int) { fireRing(poses, scan, static_cast<int>(ring), phase); });
+  internal::forEachChunkOffline(threads_, ring_count, [&](std::size_t ring, int) {
+    RandomEngine ring_random = seededEngine({options.seed, static_cast<std::uint64_t>(scan), ring, kReturns});
+    model_.measure(rings_, static_cast<int>(ring), ring_random, &returns_[ring]);
+  });
 
   std::size_t point_count = 0;
   for (const RingReturns& returns : returns_) point_count += returns.points.size();

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "common/executor.h"
 #include "simulation/lattice_noise.h"
 
 namespace saw_ndt {
@@ -149,11 +150,10 @@ TriangleMesh Terrain::mesh(std::uint16_t road_material, std::uint16_t sidewalk_m
   }
   const std::vector<std::pair<int, int>> ordered(blocks.begin(), blocks.end());
   std::vector<TriangleMesh> parts(ordered.size());
-#pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t i = 0; i < ordered.size(); ++i) {
+  internal::forEachChunkOffline(0, ordered.size(), [&](std::size_t i, int) {
     addBlock(kBlock_m * Eigen::Vector2d(ordered[i].first, ordered[i].second), road_material, sidewalk_material,
              terrain_material, parts[i]);
-  }
+  });
   TriangleMesh mesh;
   for (TriangleMesh& part : parts) {
     append(part, mesh);

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+
+#include "common/chunk_body.h"
+
+namespace saw_ndt::internal {
+
+class HelperPool;
+struct Helper;
+
+// How loops run in parallel. Real-time loops, which somebody waits for, must be quick also on processors that other
+// programs use: forEachChunk(). A thread that the system has put aside holds up nobody there unless it is in the middle
+// of a chunk. Loops that run for long, such as the making of maps, are forEachChunkOffline().
+
+/// The number of threads that work where so many are asked for: that, but at most the cores that the process had at
+/// first use, and these for 0.
+int threadCount(int requested);
+
+/// While it lives, the loops that its thread starts share helpers, which are awake and look out for chunks all the
+/// time. Loops between which little else is done are worth a session. One inside another on the same thread, or inside
+/// a chunk, does nothing: the loops belong to the outer one.
+///
+/// Helpers are threads of the process, one less than cores for all callers together, made when first needed. A session
+/// gets those that are idle when it begins, none perhaps.
+class HelperSession {
+ public:
+  /// @param threads  that work, with the calling one; 0 is all cores
+  explicit HelperSession(int threads);
+  /// @param pool  whose helpers are used
+  HelperSession(int threads, HelperPool& pool);
+  ~HelperSession();
+  HelperSession(const HelperSession&) = delete;
+  HelperSession& operator=(const HelperSession&) = delete;
+
+ private:
+  friend void runChunks(int threads, std::size_t chunk_count, const ChunkBody& body);
+
+  HelperPool& pool_;
+  bool outermost_;
+  Helper* first_ = nullptr;
+};
+
+// What the templates below stand on.
+void runChunks(int threads, std::size_t chunk_count, const ChunkBody& body);
+void runChunksOffline(int threads, std::size_t chunk_count, const ChunkBody& body);
+
+/// Calls body(std::size_t chunk, int worker) once for each chunk, in several threads, the calling one among them.
+/// Chunks go to whom is free, so what a body computes must depend on the chunk alone; worker, in [0,
+/// threadCount(threads)), is for scratch memory. Returns when all is done. A loop that a body starts is serial, its
+/// worker 0.
+///
+/// Where a chunk throws, the exception of the lowest-numbered failing one comes out once all that were begun have
+/// ended; chunks above it may be left out.
+/// @param threads  that work, with the calling one; 0 is all cores. A session has at most its own.
+template <typename Body>
+void forEachChunk(int threads, std::size_t chunk_count, Body&& body) {
+  runChunks(threads, chunk_count, referenceTo(body));
+}
+
+/// The same for work that nobody waits for, with threads of OpenMP. Its worker is in [0, threadCount(threads)) too.
+template <typename Body>
+void forEachChunkOffline(int threads, std::size_t chunk_count, Body&& body) {
+  runChunksOffline(threads, chunk_count, referenceTo(body));
+}
+
+}  // namespace saw_ndt::internal
