@@ -4,11 +4,13 @@
 #include <memory>
 #include <ostream>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// A file that appears under its name only when it is whole: it is written beside the target and renamed by commit().
 /// Without commit() the target stays as it was and nothing is left behind.
-class AtomicOutput {
+class SAW_NDT_EXPORT AtomicOutput {
  public:
   /// Opens the temporary file. Throws Error, naming the target and the system's reason, where the folder is missing or
   /// not writable, or where the target exists and is no regular file. A symbolic link keeps pointing at the new file.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "saw_ndt/common/export.h"
 #include "common/chunk_body.h"
 
 namespace saw_ndt::internal {
@@ -15,7 +16,7 @@ struct Helper;
 
 /// The number of threads that work where so many are asked for: that, but at most the cores that the process had at
 /// first use, and these for 0.
-int threadCount(int requested);
+SAW_NDT_EXPORT int threadCount(int requested);
 
 /// While it lives, the loops that its thread starts share helpers, which are awake and look out for chunks all the
 /// time. Loops between which little else is done are worth a session. One inside another on the same thread, or inside
@@ -23,7 +24,7 @@ int threadCount(int requested);
 ///
 /// Helpers are threads of the process, one less than cores for all callers together, made when first needed. A session
 /// gets those that are idle when it begins, none perhaps.
-class HelperSession {
+class SAW_NDT_EXPORT HelperSession {
  public:
   /// @param threads  that work, with the calling one; 0 is all cores
   explicit HelperSession(int threads);
@@ -42,8 +43,8 @@ class HelperSession {
 };
 
 // What the templates below stand on.
-void runChunks(int threads, std::size_t chunk_count, const ChunkBody& body);
-void runChunksOffline(int threads, std::size_t chunk_count, const ChunkBody& body);
+SAW_NDT_EXPORT void runChunks(int threads, std::size_t chunk_count, const ChunkBody& body);
+SAW_NDT_EXPORT void runChunksOffline(int threads, std::size_t chunk_count, const ChunkBody& body);
 
 /// Calls body(std::size_t chunk, int worker) once for each chunk, in several threads, the calling one among them.
 /// Chunks go to whom is free, so what a body computes must depend on the chunk alone; worker, in [0,

@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// Opens a file for binary reading. Throws Error with the system's reason where that fails, or where it is a folder.
-std::ifstream openInputFile(const std::filesystem::path& path);
+SAW_NDT_EXPORT std::ifstream openInputFile(const std::filesystem::path& path);
 
 }  // namespace saw_ndt

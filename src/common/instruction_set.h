@@ -3,6 +3,8 @@
 #include <array>
 #include <string>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// The vector instructions that the inner loops are compiled for, each set holding those before it.
@@ -21,15 +23,15 @@ constexpr std::array<InstructionSet, 4> kInstructionSets = {InstructionSet::BASE
 /// ("baseline", "sse4", "avx2" or "avx512") or limitInstructionSet() says so. Labels, maps and ground do not depend on
 /// it; the last digits of a pose do, since a fused multiply-add rounds once.
 /// @throws std::invalid_argument where the environment variable holds something else
-InstructionSet instructionSet();
+SAW_NDT_EXPORT InstructionSet instructionSet();
 
 /// Uses no more than `most` from now on, nor more than the environment variable says; AVX512 lifts an earlier limit.
 /// For tests and benchmarks: not to be called while other threads compute.
-void limitInstructionSet(InstructionSet most);
+SAW_NDT_EXPORT void limitInstructionSet(InstructionSet most);
 
 /// "baseline", "sse4", "avx2" or "avx512"
-const char* toString(InstructionSet set);
+SAW_NDT_EXPORT const char* toString(InstructionSet set);
 /// The inverse of toString(). @throws std::invalid_argument that lists the names, for another one
-InstructionSet instructionSetNamed(const std::string& name);
+SAW_NDT_EXPORT InstructionSet instructionSetNamed(const std::string& name);
 
 }  // namespace saw_ndt

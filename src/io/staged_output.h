@@ -2,11 +2,13 @@
 
 #include <filesystem>
 
+#include "saw_ndt/common/export.h"
+
 namespace saw_ndt {
 
 /// Files that appear in a folder all together: they are written into a folder within it, in folders of their own as
 /// they need, and moved by commit(). Without commit() the target stays as it was and nothing is left behind.
-class StagedOutput {
+class SAW_NDT_EXPORT StagedOutput {
  public:
   /// @param target  a folder that exists
   /// @throws Error where nothing can be written into it
