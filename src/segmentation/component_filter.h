@@ -5,25 +5,10 @@
 
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/common/sensor_model.h"
+#include "saw_ndt/segmentation/segmentation_options.h"
 #include "segmentation/range_image.h"
 
 namespace saw_ndt {
-
-/// Options of ComponentFilter; the defaults are LeGO-LOAM's.
-struct ComponentOptions {
-  /// Neighbours are connected where the line between them makes more than this angle in degrees with the line of sight
-  /// to the farther one, above 0 and below 90.
-  double connection_angle_deg = 60.0;
-  /// A component of this many points or more, all returns of its pixels counted, is kept, at least 1.
-  int minimum_points = 30;
-  /// So is a smaller one of this many points or more, at least 1, if it spans enough rings.
-  int minimum_points_tall = 5;
-  /// Rings that such a smaller component must span, at least 1.
-  int minimum_rings_tall = 3;
-
-  /// Throws std::invalid_argument that names the field and its value.
-  void check() const;
-};
 
 /// Two runs of pixels (see ComponentFilter), one above the other, that are connected.
 struct RunPair {

@@ -2,18 +2,9 @@
 
 #include <algorithm>
 
-#include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
-
-void SegmentationOptions::check() const {
-  sensor.check();
-  checkOption(mounting_pitch_deg >= -90.0 && mounting_pitch_deg <= 90.0, "mounting_pitch_deg", mounting_pitch_deg,
-              "-90 to 90");
-  ground.check();
-  components.check();
-}
 
 ScanSegmenter::ScanSegmenter(const SegmentationOptions& options) : options_(options) { options_.check(); }
 

@@ -4,28 +4,13 @@
 #include <vector>
 
 #include "saw_ndt/common/labels.h"
-#include "saw_ndt/common/sensor_model.h"
+#include "saw_ndt/common/scan_view.h"
+#include "saw_ndt/segmentation/segmentation_options.h"
 #include "segmentation/component_filter.h"
 #include "segmentation/ground_detection.h"
 #include "segmentation/range_image.h"
-#include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
-
-/// Options of ScanSegmenter and RangeImageSegmentation.
-struct SegmentationOptions {
-  /// Beams and image width of the sensor.
-  SensorModel sensor = SensorModel::named("HDL-64E");
-  /// Angle in degrees by which the sensor's x axis points below the horizon, -90 to 90.
-  double mounting_pitch_deg = 0.0;
-  /// How ground is told.
-  GroundOptions ground;
-  /// What is noise.
-  ComponentOptions components;
-
-  /// Throws std::invalid_argument that names the field and its value.
-  void check() const;
-};
 
 /// Range-image segmentation of a scan (section III.A of the paper): the label of every point. It allocates nothing once
 /// it has seen a scan as large as the present one. One object per thread.
