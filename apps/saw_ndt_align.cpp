@@ -3,12 +3,12 @@
 
 #include "alignment_report.h"
 #include "app_options.h"
+#include "localization/source_voxel_filter.h"
 #include "pose_argument.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/point_cloud_file.h"
-#include "localization/source_voxel_filter.h"
-#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 #include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 
 namespace {
 
@@ -106,7 +106,7 @@ void align(const Arguments& arguments) {
   report.result = result;
   report.weighted = pcl::traits::has_label<PointT>::value;
   report.source_points = ndt.getInputSource()->size();
-  report.target_voxels = ndt.getTargetMap()->fine().size();
+  report.target_voxels = ndt.getTargetMap().voxelCount();
   if (arguments.with_fitness) report.fitness_m2 = ndt.getFitnessScore();
   if (!arguments.output_file.empty()) {
     pcl::transformPointCloud(*source, moved, result.T_map_source.matrix());

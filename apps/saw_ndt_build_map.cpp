@@ -1,10 +1,10 @@
 #include <iostream>
 
 #include "app_options.h"
-#include "progress_bar.h"
 #include "common/atomic_output.h"
-#include "saw_ndt/drives/scan_selection.h"
+#include "progress_bar.h"
 #include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/drives/scan_selection.h"
 #include "segmentation_options.h"
 
 namespace {
@@ -46,9 +46,9 @@ int main(int argc, char** argv) {
 
     saw_ndt::ProgressBar progress(selected.size());
     const saw_ndt::WeightedVoxelMap map =
-        saw_ndt::buildSequenceMap(sequence, selected, options, [&] { progress.step(); }).build({}, options.threads);
+        saw_ndt::buildSequenceMap(sequence, selected, options, [&] { progress.step(); }).build();
     map.save(map_file);
-    std::cout << map_file << ": " << map.fine().size() << " voxels of " << map.resolution() << " m from "
-              << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";
+    std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution()
+              << " m from " << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";
   });
 }

@@ -4,8 +4,8 @@
 #include "output_folder.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
-#include "saw_ndt/common/error.h"
 #include "report/sequence_localization.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "segmentation_options.h"
 
@@ -18,16 +18,14 @@ constexpr char kDescription[] =
     "-mounting-pitch_deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
     "pose, and all together they tell the errors.";
 
-std::shared_ptr<const saw_ndt::WeightedVoxelMap> loadMap(const std::string& file,
-                                                         const saw_ndt::LocalizationMethod& method, int threads) {
-  auto map =
-      std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(file, method.voxels, threads));
-  if (method.segment && !map->labelled()) {
+saw_ndt::NdtTarget loadTarget(const std::string& file, const saw_ndt::LocalizationMethod& method, int threads) {
+  saw_ndt::NdtTarget target = saw_ndt::NdtTarget::load(file, method.voxels, threads);
+  if (method.segment && !target.labelled()) {
     throw saw_ndt::Error(file, "",
                          "was built with -classical: it has no labels, which the method " + method.name +
                              " needs; use -method classical or build it without");
   }
-  return map;
+  return target;
 }
 
 }  // namespace
@@ -82,7 +80,7 @@ int main(int argc, char** argv) {
     }
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
-    saw_ndt::Localizer localizer(loadMap(map_file, options.method, app.threads()), options);
+    saw_ndt::Localizer localizer(loadTarget(map_file, options.method, app.threads()), options);
     localizer.setInitialPose(app.isGiven("initial-pose") ? saw_ndt::transformOf(initial_pose)
                                                          : reference_lidar[static_cast<std::size_t>(selected.front())] *
                                                                options.T_base_lidar.inverse());

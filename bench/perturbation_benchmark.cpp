@@ -10,13 +10,13 @@
 #include <iostream>
 
 #include "app_options.h"
+#include "evaluation/statistics.h"
 #include "perturbed_starts.h"
 #include "progress_bar.h"
 #include "saw_ndt/common/geometry.h"
-#include "evaluation/statistics.h"
+#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/pcl/cloud_view.h"
 
 namespace {
@@ -39,8 +39,7 @@ Method ourMethod(const std::string& name, const saw_ndt::WeightedVoxelMap& map, 
   saw_ndt::LocalizerOptions options;
   options.method = saw_ndt::LocalizationMethod::named(name);
   options.alignment.threads = threads;
-  auto localizer = std::make_shared<saw_ndt::Localizer>(
-      std::make_shared<const saw_ndt::WeightedVoxelMap>(map.reweighted(options.method.voxels)), options);
+  auto localizer = std::make_shared<saw_ndt::Localizer>(map, options);
   return [localizer](const Cloud& scan, const Eigen::Isometry3d& T_start) {
     localizer->setInitialPose(T_start);
     const saw_ndt::LocalizationResult result = localizer->localize(saw_ndt::viewOf(scan), 0.0);

@@ -1,23 +1,24 @@
 #pragma once
 
-#include "saw_ndt/map/weighted_voxel_map.h"
-#include "saw_ndt/registration/alignment.h"
+#include "map/ndt_level.h"
 #include "registration/vectorized_ndt_objective.h"
+#include "saw_ndt/map/ndt_target.h"
+#include "saw_ndt/registration/alignment.h"
 
 namespace saw_ndt {
 
 /// Evaluations as an alignment makes them, one after the other: the source has been put in order.
 class RepeatedEvaluation {
  public:
-  /// @param map      is referred to, not copied
+  /// @param target   is referred to, not copied
   /// @param options  threads: 1 or more
-  RepeatedEvaluation(const WeightedVoxelMap& map, const SourcePoints& source, const AlignmentOptions& options)
-      : objective_(map.fine(), options.neighborhood_search,
-                   scoreParameters(options.score_function, options.outlier_ratio, map.resolution()),
-                   {options.use_weights && map.labelled() && source.labelled, options.mismatch_penalty,
-                    map.weighting().confidence}),
+  RepeatedEvaluation(const NdtTarget& target, const SourcePoints& source, const AlignmentOptions& options)
+      : objective_(target.fine(), options.neighborhood_search,
+                   scoreParameters(options.score_function, options.outlier_ratio, target.resolution()),
+                   {options.use_weights && target.labelled() && source.labelled, options.mismatch_penalty,
+                    target.weighting().confidence}),
         threads_(options.threads) {
-    source_.order(source, map.resolution(), map.weighting().confidence, threads_);
+    source_.order(source, target.resolution(), target.weighting().confidence, threads_);
   }
 
   NdtDerivatives at(const Eigen::Isometry3d& T_map_source) {

@@ -13,10 +13,10 @@
 #include "app_options.h"
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
+#include "evaluation/statistics.h"
 #include "registration_case.h"
 #include "repeated_evaluation.h"
 #include "roofline_kernels.h"
-#include "evaluation/statistics.h"
 
 namespace {
 
@@ -134,7 +134,7 @@ struct Evaluation {
 Evaluation measureEvaluation(const saw_ndt::RegistrationCase& scan, int threads) {
   saw_ndt::AlignmentOptions options = scan.options;
   options.threads = threads;
-  saw_ndt::RepeatedEvaluation repeated(scan.map, scan.source, options);
+  saw_ndt::RepeatedEvaluation repeated(scan.target, scan.source, options);
   Evaluation evaluation;
   evaluation.points = static_cast<double>(scan.source.size());
   const clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;

@@ -1,7 +1,9 @@
 #include "saw_ndt/drives/drive_map.h"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
+#include <mutex>
 
 #include "common/threads.h"
 #include "saw_ndt/pcl/cloud_view.h"
@@ -11,13 +13,16 @@ WeightedMapBuilder buildSequenceMap(const KittiSequence& sequence, const std::ve
                                     const SequenceMapOptions& options, const std::function<void()>& scan_done) {
   if (options.segmentation) options.segmentation->check();
   const std::vector<Eigen::Isometry3d> poses = sequence.posesLidar();
-  WeightedMapBuilder map(options.resolution_m);
+  WeightedMapBuilder map(options.resolution_m, options.segmentation);
+  // Threads read and segment scans. What takes memory, the sums, there is once, and a scan is added to it in a fraction
+  // of the time that it takes to segment.
+  const int thread_count = std::min(threadCount(options.threads), threadCount(0));
   const auto scan_count = static_cast<std::ptrdiff_t>(scans.size());
+  std::mutex map_mutex;
   std::exception_ptr failure;
   std::atomic<std::ptrdiff_t> failed_scan{scan_count};
-#pragma omp parallel num_threads(threadCount(options.threads))
+#pragma omp parallel num_threads(thread_count)
   {
-    WeightedMapBuilder part(options.resolution_m);
     ScanSegmenter segmenter(options.segmentation.value_or(SegmentationOptions()));
     std::vector<StructuralLabel> labels;
 #pragma omp for schedule(dynamic)
@@ -27,11 +32,10 @@ WeightedMapBuilder buildSequenceMap(const KittiSequence& sequence, const std::ve
         const int scan = scans[static_cast<std::size_t>(i)];
         const pcl::PointCloud<pcl::PointXYZI> cloud = sequence.readScan(scan);
         const Eigen::Isometry3d& T_map_lidar = poses[static_cast<std::size_t>(scan)];
-        if (options.segmentation) {
-          segmenter.segment(viewOf(cloud), labels);
-          part.addScan(viewOf(cloud), LabelView(labels), T_map_lidar);
-        } else {
-          part.addScan(viewOf(cloud), {}, T_map_lidar);
+        if (options.segmentation) segmenter.segment(viewOf(cloud), labels);
+        {
+          const std::lock_guard<std::mutex> lock(map_mutex);
+          map.addScan(viewOf(cloud), options.segmentation ? LabelView(labels) : LabelView(), T_map_lidar);
         }
         if (scan_done) scan_done();
       } catch (...) {
@@ -43,8 +47,6 @@ WeightedMapBuilder buildSequenceMap(const KittiSequence& sequence, const std::ve
         }
       }
     }
-#pragma omp critical
-    map.merge(part);
   }
   if (failure) std::rethrow_exception(failure);
   return map;

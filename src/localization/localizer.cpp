@@ -5,9 +5,10 @@
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
-#include "saw_ndt/common/error.h"
 #include "common/threads.h"
+#include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 namespace {
@@ -90,26 +91,28 @@ void concludeLocalization(LocalizationResult& result, const AcceptanceOptions& l
   if (result.accepted()) prediction.accept(T_map_aligned, result.stamp_s);
 }
 
-Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options)
-    : map_(std::move(map)),
+Localizer::Localizer(NdtTarget target, const LocalizerOptions& options)
+    : target_(std::move(target)),
       options_((options.check(), options)),
       segmenter_(options.segmentation),
       filter_(options.source_voxel_size_m),
       prediction_(options.prediction) {
-  if (!map_) throw std::invalid_argument("Localizer: the map is a null pointer");
-  if (options_.method.segment && !map_->labelled()) {
+  if (options_.method.segment && !target_.labelled()) {
     throw std::invalid_argument("Localizer: method " + options_.method.name +
                                 " needs a map with labels, and this one was built without");
   }
-  if (!(map_->weighting() == options_.method.voxels)) {
-    throw std::invalid_argument("Localizer: the map was read with another VoxelWeighting than that of method " +
-                                options_.method.name + ": read it with LocalizationMethod::voxels");
+  if (!(target_.weighting() == options_.method.voxels)) {
+    throw std::invalid_argument("Localizer: the target was made with another VoxelWeighting than that of method " +
+                                options_.method.name + ": make it with LocalizationMethod::voxels");
   }
   options_.alignment.use_weights = options_.method.use_weights;
   options_.alignment.mismatch_penalty = options_.method.mismatch_penalty;
   options_.alignment.outlier_ratio = options_.method.outlier_ratio;
   options_.alignment.evaluate_likelihoods = true;
 }
+
+Localizer::Localizer(const WeightedVoxelMap& map, const LocalizerOptions& options)
+    : Localizer(NdtTarget(map, options.method.voxels, options.alignment.threads), options) {}
 
 const SourcePoints& Localizer::makeSource(const ScanView& scan, StageTimes& times) {
   const LocalizationMethod& method = options_.method;
@@ -135,7 +138,7 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
   result.source_points = source.size();
 
   const Stopwatch alignment;
-  result.alignment = aligner_.align(*map_, source, result.T_map_base_predicted, options_.alignment);
+  result.alignment = aligner_.align(target_, source, result.T_map_base_predicted, options_.alignment);
   result.times.align_ms = alignment.milliseconds();
 
   result.likelihoods = result.alignment.likelihoods;

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 
-#include "registration/ndt_kernel.h"
-#include "registration/voxel_pairs.h"
 #include "registration/batch_workspace.h"
+#include "registration/ndt_kernel.h"
 #include "registration/ordered_source.h"
+#include "registration/voxel_pairs.h"
 
 namespace saw_ndt {
 
@@ -27,30 +26,26 @@ struct LikelihoodSums {
 class BatchVoxelFinder {
  public:
   /// @param level  is referred to, not copied
-  BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source);
+  BatchVoxelFinder(const internal::NdtLevel& level, NeighborhoodSearchMethod method,
+                   const Eigen::Isometry3d& T_map_source);
 
   /// Fills the scratch memory from `count` points of the source, at most kPointsPerBatch.
   /// Puts them in a better order first where runs are short.
   void find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch);
 
  private:
-  /// Where a neighbour lies in the index, and in space (m).
-  struct Shift {
-    std::ptrdiff_t offset;
-    float x_m, y_m, z_m;
-  };
-
   void findVoxels(BatchScratch& scratch);
+  template <typename NeighbourRows>
+  void findVoxelsIn(const NeighbourRows& neighbour_rows, BatchScratch& scratch);
   void cutIntoUnits(BatchScratch& scratch) const;
 
-  const NdtLevel& level_;
+  const internal::NdtLevel& level_;
+  NeighborhoodSearchMethod method_;
   std::size_t points_per_unit_ = pointsPerUnit();
   std::size_t units_per_vector_ = unitsPerVector();
-  std::array<Shift, kMostNeighbours> shifts_{};
-  std::size_t neighbour_count_ = 0;
   VoxelCoordinate origin_;
   BatchPose pose_;
-  VoxelIndex::Cursor cursor_;
+  internal::VoxelIndex::Cursor cursor_;
 };
 
 /// The pose of a batch, and the voxel that its positions are taken from: the one that holds the source's origin.

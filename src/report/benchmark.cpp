@@ -7,31 +7,31 @@
 #include <stdexcept>
 #include <utility>
 
-#include "saw_ndt/common/error.h"
 #include "report/pcl_ndt_localizer.h"
-#include "saw_ndt/drives/scan_selection.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/drives/scan_selection.h"
 
 namespace saw_ndt {
 namespace {
 
-/// One map read in each way that a method asks for; methods that ask for the same share it.
-class MapReadings {
+/// The targets of one map, one for each weighting that a method asks for; methods that ask for the same share it.
+class MapTargets {
  public:
-  explicit MapReadings(WeightedVoxelMap map) : map_(std::move(map)) {}
+  explicit MapTargets(WeightedVoxelMap map) : map_(std::move(map)) {}
 
-  std::shared_ptr<const WeightedVoxelMap> with(const VoxelWeighting& weighting) {
-    for (const auto& reading : readings_) {
-      if (reading->weighting() == weighting) return reading;
+  NdtTarget with(const VoxelWeighting& weighting) {
+    for (const NdtTarget& target : targets_) {
+      if (target.weighting() == weighting) return target;
     }
-    return readings_.emplace_back(std::make_shared<const WeightedVoxelMap>(map_.reweighted(weighting)));
+    return targets_.emplace_back(map_, weighting);
   }
 
   const WeightedVoxelMap& map() const { return map_; }
 
  private:
   WeightedVoxelMap map_;
-  std::vector<std::shared_ptr<const WeightedVoxelMap>> readings_;
+  std::vector<NdtTarget> targets_;
 };
 
 /// A localizer of ours or PCL's, at its initial pose.
@@ -155,21 +155,21 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
   map_options.resolution_m = options_.resolution_m;
   map_options.segmentation = common.segmentation;
   map_options.threads = common.alignment.threads;
-  MapReadings maps(buildSequenceMap(source, map_scans, map_options, progress.step_done).build());
-  result.voxels = voxelCloud(maps.map());
+  MapTargets targets(buildSequenceMap(source, map_scans, map_options, progress.step_done).build());
+  result.voxels = voxelCloud(targets.map());
 
   std::vector<ScanLocalizer> localizers;
   for (const std::string& method : options_.methods) {
     const LocalizerOptions options = optionsOf(method, common);
-    const auto map = maps.with(options.method.voxels);
+    const NdtTarget target = targets.with(options.method.voxels);
     if (method == kPclNdtMethod) {
       begin(progress, prefix + "giving PCL the points of " + std::to_string(map_scans.size()) + " scans",
             map_scans.size());
       localizers.push_back(startedAt(result.T_map_base.front(),
                                      std::make_shared<PclNdtLocalizer>(mapPoints(source, map_scans, progress.step_done),
-                                                                       options_.resolution_m, map, options)));
+                                                                       options_.resolution_m, target, options)));
     } else {
-      localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(map, options)));
+      localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(target, options)));
     }
   }
 

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "saw_ndt/common/error.h"
 #include "common/threads.h"
+#include "saw_ndt/common/error.h"
 
 // PCL's library has it compiled; instantiated anew it would be held to this project's warnings.
 extern template class pcl::NormalDistributionsTransform<pcl::PointXYZ, pcl::PointXYZ>;
@@ -84,10 +84,10 @@ class PclNdtLocalizer::Registration {
   pcl::NormalDistributionsTransform<pcl::PointXYZ, pcl::PointXYZ> ndt_;
 };
 
-PclNdtLocalizer::PclNdtLocalizer(const Cloud::ConstPtr& target, double resolution_m,
-                                 std::shared_ptr<const WeightedVoxelMap> judge, const LocalizerOptions& options)
+PclNdtLocalizer::PclNdtLocalizer(const Cloud::ConstPtr& target, double resolution_m, NdtTarget judge,
+                                 const LocalizerOptions& options)
     : judge_(std::move(judge)), options_((options.check(), options)), prediction_(options.prediction) {
-  if (!target || !judge_) throw std::invalid_argument("PclNdtLocalizer: target or judge is a null pointer");
+  if (!target) throw std::invalid_argument("PclNdtLocalizer: the target is a null pointer");
   checkOption(resolution_m > 0.0, "resolution_m", resolution_m, "positive");
   options_.acceptance.min_likelihood = 0.0;
   registration_ = std::make_unique<Registration>(target, resolution_m);
@@ -112,7 +112,7 @@ LocalizationResult PclNdtLocalizer::localize(const ScanView& scan, double stamp_
   result.times.align_ms = millisecondsSince(alignment_start);
   result.times.total_ms = millisecondsSince(start);
 
-  result.likelihoods = evaluateLikelihoods(judge_->fine(), sourceOf(*source), result.alignment.T_map_source,
+  result.likelihoods = evaluateLikelihoods(judge_.fine(), sourceOf(*source), result.alignment.T_map_source,
                                            AlignmentOptions().outlier_ratio, threadCount(options_.alignment.threads));
   concludeLocalization(result, options_.acceptance, prediction_);
   return result;

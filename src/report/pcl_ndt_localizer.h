@@ -19,11 +19,11 @@ class PclNdtLocalizer {
  public:
   /// @param target        points of the map (m, map frame)
   /// @param resolution_m  edge of PCL's voxels, positive
-  /// @param judge         map by whose fine level the likelihoods are told, outside of the measured time
+  /// @param judge         target by whose fine level the likelihoods are told, outside of the measured time
   /// @param options       mounting, source_voxel_size_m, prediction and limits of correction; the rest does not matter
-  /// @throws std::invalid_argument where an option does not hold, or a pointer is null
-  PclNdtLocalizer(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& target, double resolution_m,
-                  std::shared_ptr<const WeightedVoxelMap> judge, const LocalizerOptions& options);
+  /// @throws std::invalid_argument where an option does not hold, or the target is a null pointer
+  PclNdtLocalizer(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& target, double resolution_m, NdtTarget judge,
+                  const LocalizerOptions& options);
   ~PclNdtLocalizer();
 
   /// Where the vehicle is at the first scan. @throws std::invalid_argument unless it is finite
@@ -36,7 +36,7 @@ class PclNdtLocalizer {
  private:
   class Registration;
 
-  std::shared_ptr<const WeightedVoxelMap> judge_;
+  NdtTarget judge_;
   LocalizerOptions options_;
   MotionPrediction prediction_;
   std::unique_ptr<Registration> registration_;

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "map_fixtures.h"
+#include "map/map_fixtures.h"
 #include "real_data.h"
 #include "saw_ndt/common/error.h"
 #include "temporary_folder.h"
@@ -53,7 +53,7 @@ TEST_F(SequenceMap, CountsScansAndReportsThem) {
   EXPECT_EQ(map.origin().scan_count, 3U);
   EXPECT_TRUE(map.labelled());
   EXPECT_EQ(map.resolution(), 2.0);
-  EXPECT_GT(map.fine().size(), 500U);
+  EXPECT_GT(map.voxelCount(), 500U);
 }
 
 TEST(SequenceMapErrors, TheFirstBadScanIsNamed) {

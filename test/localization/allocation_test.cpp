@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "allocation_counter.h"
-#include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "synthetic_drive.h"
 #include "temporary_folder.h"
@@ -26,7 +26,7 @@ TEST(Localizer, AllocatesNothingOfAScansSizeInTheSteadyState) {
     options.method = LocalizationMethod::named(method);
     options.segmentation.sensor = sensor;
     options.alignment.threads = 1;
-    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map.reweighted(options.method.voxels)), options);
+    Localizer localizer(map, options);
     std::size_t before = 0;
     for (const bool settled : {false, true}) {
       localizer.setInitialPose(drive.T_map_lidar[0]);

@@ -6,8 +6,8 @@
 
 #include "real_data.h"
 #include "report/sequence_localization.h"
-#include "saw_ndt/drives/scan_selection.h"
 #include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/drives/scan_selection.h"
 
 namespace saw_ndt {
 namespace {
@@ -25,7 +25,7 @@ class RealDrive {
     LocalizerOptions options;
     options.method = LocalizationMethod::named(method);
     options.alignment.threads = threads;
-    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map_.reweighted(options.method.voxels)), options);
+    Localizer localizer(map_, options);
     const std::vector<int> numbers = selected(scans);
     localizer.setInitialPose(reference_[static_cast<std::size_t>(numbers.front())]);
     SequenceLocalization run = localizeSequence(localizer, sequence_, numbers);

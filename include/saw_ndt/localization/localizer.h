@@ -1,17 +1,16 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <memory>
 #include <vector>
 
+#include "localization/source_voxel_filter.h"
+#include "registration/likelihoods.h"
+#include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/localization/localization_method.h"
 #include "saw_ndt/localization/motion_prediction.h"
-#include "localization/source_voxel_filter.h"
-#include "saw_ndt/map/weighted_voxel_map.h"
-#include "registration/likelihoods.h"
+#include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
-#include "saw_ndt/common/scan_view.h"
 
 namespace saw_ndt {
 
@@ -80,10 +79,12 @@ void concludeLocalization(LocalizationResult& result, const AcceptanceOptions& l
 /// scan.
 class Localizer {
  public:
-  /// @param map  read with options.method.voxels (see WeightedVoxelMap::load and reweighted)
-  /// @throws std::invalid_argument where an option does not hold, the map is null, was read in another way, or
-  ///         has no labels while the method segments
-  Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options);
+  /// @param target  made with options.method.voxels
+  /// @throws std::invalid_argument where an option does not hold, the target was made with another weighting, or has no
+  ///         labels while the method segments
+  Localizer(NdtTarget target, const LocalizerOptions& options);
+  /// Makes the target of a map with options.method.voxels.
+  Localizer(const WeightedVoxelMap& map, const LocalizerOptions& options);
 
   /// Where the vehicle is at the first scan, or after it was lost. @throws std::invalid_argument unless it is finite
   void setInitialPose(const Eigen::Isometry3d& T_map_base) { prediction_.reset(T_map_base); }
@@ -98,7 +99,7 @@ class Localizer {
  private:
   const SourcePoints& makeSource(const ScanView& scan, StageTimes& times);
 
-  std::shared_ptr<const WeightedVoxelMap> map_;
+  NdtTarget target_;
   LocalizerOptions options_;
   ScanSegmenter segmenter_;
   std::vector<StructuralLabel> labels_;
