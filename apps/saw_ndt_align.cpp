@@ -106,7 +106,7 @@ void align(const Arguments& arguments) {
   report.result = result;
   report.weighted = pcl::traits::has_label<PointT>::value;
   report.source_points = ndt.getInputSource()->size();
-  report.target_voxels = ndt.getTargetMap()->fine().size();
+  report.target_voxels = ndt.getTargetMap().voxelCount();
   if (arguments.with_fitness) report.fitness_m2 = ndt.getFitnessScore();
   if (!arguments.output_file.empty()) {
     pcl::transformPointCloud(*source, moved, result.T_map_source.matrix());

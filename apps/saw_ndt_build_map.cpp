@@ -47,9 +47,9 @@ int main(int argc, char** argv) {
 
     saw_ndt::ProgressBar progress(selected.size());
     const saw_ndt::WeightedVoxelMap map =
-        saw_ndt::buildDriveMap(*sequence.scans(selected), options, [&] { progress.step(); }).build({}, options.threads);
+        saw_ndt::buildDriveMap(*sequence.scans(selected), options, [&] { progress.step(); }).build();
     map.save(map_file);
-    std::cout << map_file << ": " << map.fine().size() << " voxels of " << map.resolution() << " m from "
+    std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution() << " m from "
               << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";
   });
 }

@@ -19,16 +19,14 @@ constexpr char kDescription[] =
     "-mounting-pitch_deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
     "pose, and all together they tell the errors.";
 
-std::shared_ptr<const saw_ndt::WeightedVoxelMap> loadMap(const std::string& file,
-                                                         const saw_ndt::LocalizationMethod& method, int threads) {
-  auto map =
-      std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::WeightedVoxelMap::load(file, method.voxels, threads));
-  if (method.segment && !map->labelled()) {
+saw_ndt::NdtTarget loadTarget(const std::string& file, const saw_ndt::LocalizationMethod& method, int threads) {
+  saw_ndt::NdtTarget target = saw_ndt::NdtTarget::load(file, method.voxels, threads);
+  if (method.segment && !target.labelled()) {
     throw saw_ndt::Error(file, "",
                          "was built with -classical: it has no labels, which the method " + method.name +
                              " needs; use -method classical or build it without");
   }
-  return map;
+  return target;
 }
 
 }  // namespace
@@ -64,6 +62,8 @@ int main(int argc, char** argv) {
   app.addOption("max-correction_deg", &options.acceptance.max_correction_deg, "DEGREES",
                 "a scan turned farther than this from its predicted pose is rejected");
   segmentation.addTo(app);
+  app.addFlag("allow-other-segmentation", &options.allow_other_segmentation,
+              "go on where the scans of the map were segmented by other options, as those of another LiDAR");
 
   return saw_ndt::runApp(argc, argv, app, [&] {
     if (skip_s < 0.0) throw saw_ndt::UsageError("option -skip: must be 0 or greater");
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     }
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
-    saw_ndt::Localizer localizer(loadMap(map_file, options.method, app.threads()), options);
+    saw_ndt::Localizer localizer(loadTarget(map_file, options.method, app.threads()), options);
     localizer.setInitialPose(app.isGiven("initial-pose")
                                  ? saw_ndt::transformOf(initial_pose)
                                  : sequence.posesLidar()[static_cast<std::size_t>(selected.front())] *

@@ -10,8 +10,9 @@
 namespace {
 
 constexpr char kDescription[] =
-    "Tells what a map file holds: where it lies, how many voxels, points and labels, and how its voxels are shaped and "
-    "weighted by the default confidences. Voxels are those that have a distribution, of 6 points or more.";
+    "Tells what a map file holds: where it lies, how many voxels, points and labels, how it was made, and how its "
+    "voxels are shaped and weighted by the default confidences. Voxels are those that have a distribution, of 6 points "
+    "or more.";
 
 }  // namespace
 
@@ -26,7 +27,7 @@ int main(int argc, char** argv) {
                 "(1 linear, 2 planar, 3 volumetric) and weight");
 
   return saw_ndt::runApp(argc, argv, app, [&] {
-    const saw_ndt::WeightedVoxelMap map = saw_ndt::WeightedVoxelMap::load(map_file, {}, app.threads());
+    const saw_ndt::WeightedVoxelMap map = saw_ndt::WeightedVoxelMap::load(map_file);
     if (!pcd_file.empty()) {
       pcl::PCLPointCloud2 voxels;
       pcl::toPCLPointCloud2(saw_ndt::voxelCloud(map), voxels);

@@ -13,7 +13,7 @@ void SegmentationArguments::addTo(AppOptions& app) {
 SegmentationOptions SegmentationArguments::options() const {
   SegmentationOptions options;
   options.sensor = SensorModel::named(sensor_);
-  options.ground.rule = ground_rule_ == "growing" ? GroundRule::Growing : GroundRule::Inclination;
+  options.ground.rule = ground_rule_ == toString(GroundRule::Growing) ? GroundRule::Growing : GroundRule::Inclination;
   options.mounting_pitch_deg = mounting_pitch_deg_;
   checkedUsage([&] { options.check(); });
   return options;

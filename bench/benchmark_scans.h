@@ -37,7 +37,7 @@ const std::vector<LidarPoint>& benchmarkScan();
 pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkScanPoints();
 /// Its reference pose, T_map_lidar.
 const Eigen::Isometry3d& benchmarkPose();
-/// The map of benchmarkMapScans(), 1 m voxels, labelled, with default weighting; see WeightedVoxelMap::reweighted().
+/// The map of benchmarkMapScans(), 1 m voxels, labelled.
 const WeightedVoxelMap& benchmarkMap();
 /// For benchmarkTarget(): all of it.
 constexpr std::size_t kWholeTarget = std::numeric_limits<std::size_t>::max();

@@ -17,9 +17,7 @@ void localize(benchmark::State& state, const std::string& method_name, int threa
   saw_ndt::LocalizerOptions options;
   options.method = saw_ndt::LocalizationMethod::named(method_name);
   options.alignment.threads = threads;
-  saw_ndt::Localizer localizer(
-      std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::benchmarkMap().reweighted(options.method.voxels)),
-      options);
+  saw_ndt::Localizer localizer(saw_ndt::benchmarkMap(), options);
   const saw_ndt::ScanView scan = saw_ndt::viewOf(saw_ndt::benchmarkScan());
   saw_ndt::StageTimes sums;
   double evaluations = 0.0;

@@ -3,10 +3,10 @@
 //
 //   setInputTarget    2,000,000 points of consecutive scans in the map frame, coarse level included
 //   add_cloud         the points into sums
-//   build             the sums into a map: sorted, both levels and their indices
+//   build             the sums into a map and its target: sorted, both levels and their indices
 //   fine, coarse      one level with its index
 //   index             the index of the fine level
-//   save, load        a synthetic map of 200,000 voxels; loading includes both levels
+//   save, load        a synthetic map of 200,000 voxels; loading is to both levels
 
 #include <pcl/registration/ndt.h>
 #include <unistd.h>
@@ -16,6 +16,9 @@
 
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
+#include "map/coarse_sums.h"
+#include "map/ndt_level.h"
+#include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/map/weighted_map_builder.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
@@ -112,22 +115,31 @@ void addCloud(benchmark::State& state, const Eigen::Isometry3d& T_map_cloud, int
 }
 
 void build(benchmark::State& state, int threads) {
-  for (auto _ : state) benchmark::DoNotOptimize(targetBuilder().build({}, threads));
+  for (auto _ : state) benchmark::DoNotOptimize(NdtTarget(targetBuilder().build(), {}, threads));
   setTimePer(state, "entry", targetMap().entries().size());
 }
 
 void level(benchmark::State& state, int factor, int threads) {
+  const std::vector<LabelledVoxelSums>& entries = targetMap().entries();
+  const double resolution_m = targetMap().resolution(), step_m = resolution_m / kStepsPerVoxel;
   std::size_t voxels = 0;
   for (auto _ : state) {
-    voxels = NdtLevel::fromSums(targetMap().entries(), targetMap().resolution(), factor, {}, threads).size();
+    if (factor == 1) {
+      voxels = internal::NdtLevel::fromSums(entries, resolution_m, {}, step_m, CellPrecision::SINGLE, threads).size();
+    } else {
+      internal::CoarseSums sums(factor);
+      sums.add(entries.data(), entries.data() + entries.size());
+      voxels = internal::NdtLevel::fromSums(sums.takeInMapOrder(), factor * resolution_m, {}, step_m,
+                                            CellPrecision::SINGLE, threads)
+                   .size();
+    }
   }
   setTimePer(state, "voxel", voxels);
 }
 
 void index(benchmark::State& state) {
-  std::vector<VoxelCoordinate> voxels;
-  for (std::size_t i = 0; i < targetMap().fine().size(); ++i) voxels.push_back(targetMap().fine().voxel(i).voxel);
-  for (auto _ : state) benchmark::DoNotOptimize(VoxelIndex(voxels));
+  const std::vector<VoxelCoordinate> voxels = NdtTarget(targetMap()).fine().index().voxels();
+  for (auto _ : state) benchmark::DoNotOptimize(internal::VoxelIndex(voxels));
   setTimePer(state, "voxel", voxels.size());
 }
 
@@ -139,7 +151,7 @@ void save(benchmark::State& state) {
 
 void load(benchmark::State& state, int threads) {
   const MapFile file;
-  for (auto _ : state) benchmark::DoNotOptimize(WeightedVoxelMap::load(file.path(), {}, threads));
+  for (auto _ : state) benchmark::DoNotOptimize(NdtTarget::load(file.path(), {}, threads));
   setTimePer(state, "entry", kFileVoxels);
 }
 

@@ -37,8 +37,7 @@ Method ourMethod(const std::string& name, const saw_ndt::WeightedVoxelMap& map, 
   saw_ndt::LocalizerOptions options;
   options.method = saw_ndt::LocalizationMethod::named(name);
   options.alignment.threads = threads;
-  auto localizer = std::make_shared<saw_ndt::Localizer>(
-      std::make_shared<const saw_ndt::WeightedVoxelMap>(map.reweighted(options.method.voxels)), options);
+  auto localizer = std::make_shared<saw_ndt::Localizer>(map, options);
   return [localizer](const Scan& scan, const Eigen::Isometry3d& T_start) {
     localizer->setInitialPose(T_start);
     const saw_ndt::LocalizationResult result = localizer->localize(saw_ndt::viewOf(scan), 0.0);

@@ -17,7 +17,7 @@ void evaluate(benchmark::State& state, const RegistrationCase& scan, int threads
   saw_ndt::AlignmentOptions options = scan.options;
   options.threads = threads;
   saw_ndt::NdtEvaluation source;
-  source.begin(scan.map, scan.source, options);
+  source.begin(scan.target, scan.source, options);
   const saw_ndt::Evaluation evaluation = source.onFineLevel();
   saw_ndt::NdtDerivatives derivatives;
   for (auto _ : state) {
@@ -40,7 +40,7 @@ void align(benchmark::State& state, const RegistrationCase& scan, int threads) {
   while (state.KeepRunningBatch(saw_ndt::kPerturbedStartCount)) {
     for (int k = 0; k < saw_ndt::kPerturbedStartCount; ++k) {
       const Eigen::Isometry3d T_start = saw_ndt::perturbedStart(saw_ndt::benchmarkPose(), k);
-      evaluations += aligner.align(scan.map, scan.source, T_start, options).evaluations;
+      evaluations += aligner.align(scan.target, scan.source, T_start, options).evaluations;
     }
   }
   state.counters["evaluations"] = benchmark::Counter(evaluations, benchmark::Counter::kAvgIterations);

@@ -12,10 +12,11 @@ const RegistrationCase& registrationCase(const std::string& method_name) {
   if (found != cases.end()) return found->second;
   LocalizerOptions options;
   options.method = LocalizationMethod::named(method_name);
-  const auto map = std::make_shared<const WeightedVoxelMap>(benchmarkMap().reweighted(options.method.voxels));
+  const NdtTarget target(benchmarkMap(), options.method.voxels);
   // A localizer's options are the alignment's as its method sets them.
-  const AlignmentOptions alignment = Localizer(map, options).options().alignment;
-  return cases.emplace(method_name, RegistrationCase{*map, benchmarkSource(benchmarkScan(), options.method), alignment})
+  const AlignmentOptions alignment = Localizer(target, options).options().alignment;
+  return cases
+      .emplace(method_name, RegistrationCase{target, benchmarkSource(benchmarkScan(), options.method), alignment})
       .first->second;
 }
 

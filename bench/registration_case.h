@@ -8,7 +8,7 @@ namespace saw_ndt {
 
 /// What a Localizer of one method registers of the benchmarks' scan.
 struct RegistrationCase {
-  WeightedVoxelMap map;
+  NdtTarget target;
   SourcePoints source;
   AlignmentOptions options;
 };

@@ -141,7 +141,7 @@ Evaluation measureEvaluation(const saw_ndt::RegistrationCase& scan, int threads)
   saw_ndt::AlignmentOptions options = scan.options;
   options.threads = threads;
   saw_ndt::NdtEvaluation source;
-  source.begin(scan.map, scan.source, options);
+  source.begin(scan.target, scan.source, options);
   const saw_ndt::Evaluation repeated = source.onFineLevel();
   Evaluation evaluation;
   evaluation.points = static_cast<double>(scan.source.size());

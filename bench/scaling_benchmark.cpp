@@ -18,10 +18,11 @@ constexpr std::size_t kMapVoxels = 100000;   // where the source grows
 constexpr std::size_t kBlockVoxels = 10000;  // a map that holds all that a scan sees
 constexpr std::size_t kMostVoxels = 10000000;
 
-const saw_ndt::WeightedVoxelMap& mapOf(std::size_t voxel_count) {
-  static std::map<std::size_t, saw_ndt::WeightedVoxelMap> maps;
-  const auto found = maps.find(voxel_count);
-  return found != maps.end() ? found->second : maps.emplace(voxel_count, saw_ndt::cityMap(voxel_count)).first->second;
+const saw_ndt::NdtTarget& targetOf(std::size_t voxel_count) {
+  static std::map<std::size_t, saw_ndt::NdtTarget> targets;
+  const auto found = targets.find(voxel_count);
+  return found != targets.end() ? found->second
+                                : targets.emplace(voxel_count, saw_ndt::cityTarget(voxel_count)).first->second;
 }
 
 saw_ndt::AlignmentOptions optionsFor(int threads) {
@@ -31,11 +32,11 @@ saw_ndt::AlignmentOptions optionsFor(int threads) {
 }
 
 void evaluate(benchmark::State& state, const saw_ndt::SourcePoints& source, std::size_t map_voxels, int threads) {
-  const saw_ndt::WeightedVoxelMap& map = mapOf(map_voxels);
+  const saw_ndt::NdtTarget& target = targetOf(map_voxels);
   const Eigen::Isometry3d T_map_source(Eigen::Translation3d(0.03, 0.02, 0.01));
   const saw_ndt::AlignmentOptions options = optionsFor(threads);
   saw_ndt::NdtEvaluation ordered;
-  ordered.begin(map, source, options);
+  ordered.begin(target, source, options);
   const saw_ndt::Evaluation evaluation = ordered.onFineLevel();
   saw_ndt::NdtDerivatives derivatives;
   for (auto _ : state) {
@@ -48,12 +49,12 @@ void evaluate(benchmark::State& state, const saw_ndt::SourcePoints& source, std:
 }
 
 void align(benchmark::State& state, const saw_ndt::SourcePoints& source, std::size_t map_voxels, int threads) {
-  const saw_ndt::WeightedVoxelMap& map = mapOf(map_voxels);
+  const saw_ndt::NdtTarget& target = targetOf(map_voxels);
   const Eigen::Isometry3d T_start =
       Eigen::Translation3d(0.3, 0.2, 0.05) * Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ());
   saw_ndt::NdtAligner aligner;
   double evaluations = 0.0;
-  for (auto _ : state) evaluations += aligner.align(map, source, T_start, optionsFor(threads)).evaluations;
+  for (auto _ : state) evaluations += aligner.align(target, source, T_start, optionsFor(threads)).evaluations;
   saw_ndt::setTimePer(state, "point", source.size());
   state.counters["evaluations"] = benchmark::Counter(evaluations, benchmark::Counter::kAvgIterations);
 }

@@ -49,7 +49,7 @@ class Noise {
 
 }  // namespace
 
-WeightedVoxelMap cityMap(std::size_t voxel_count) {
+NdtTarget cityTarget(std::size_t voxel_count) {
   const VoxelSums squares[3] = {squareAcross(0), squareAcross(1), squareAcross(2)};
   std::vector<LabelledVoxelSums> entries;
   entries.reserve(voxel_count);
@@ -77,7 +77,7 @@ WeightedVoxelMap cityMap(std::size_t voxel_count) {
   origin.labelled = true;
   origin.scan_count = 1;
   origin.point_count = voxel_count * squares[0].count;
-  return WeightedVoxelMap(origin, std::move(entries));
+  return NdtTarget(WeightedVoxelMap(origin, std::move(entries)));
 }
 
 SourcePoints cityScan(std::size_t point_count) {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "saw_ndt/map/weighted_voxel_map.h"
+#include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {
@@ -11,7 +11,7 @@ namespace saw_ndt {
 
 /// The map of the `voxel_count` voxels that are nearest to the middle: the whole city block there from about 3000 on,
 /// of which a larger map has the same voxels.
-WeightedVoxelMap cityMap(std::size_t voxel_count);
+NdtTarget cityTarget(std::size_t voxel_count);
 
 /// What a LiDAR of 64 rings sees in the block in the middle, `point_count` points in the order of its rings (m, map
 /// frame), labelled.

@@ -39,23 +39,25 @@ class SharedSource {
 WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,
                                  const std::function<void()>& scan_done) {
   if (options.segmentation) options.segmentation->check();
-  WeightedMapBuilder map(options.resolution_m);
+  WeightedMapBuilder map(options.resolution_m, options.segmentation);
   SharedSource source(scans);
+  // Threads read and segment scans. What takes memory, the sums, there is once, and a scan is added to it in a fraction
+  // of the time that it takes to segment.
   std::mutex map_mutex;
   const int threads = internal::threadCount(options.threads);
   internal::forEachChunkOffline(threads, static_cast<std::size_t>(threads), [&](std::size_t, int) {
-    WeightedMapBuilder part(options.resolution_m);
     ScanSegmenter segmenter(options.segmentation.value_or(SegmentationOptions()));
     std::vector<StructuralLabel> labels;
     RecordedScan scan;
     while (source.next(scan)) {
       const ScanView view = viewOf(scan.points);
       if (options.segmentation) segmenter.segment(view, labels);
-      part.addScan(view, options.segmentation ? LabelView(labels) : LabelView(), *scan.T_map_lidar);
+      {
+        const std::lock_guard<std::mutex> lock(map_mutex);
+        map.addScan(view, options.segmentation ? LabelView(labels) : LabelView(), *scan.T_map_lidar);
+      }
       if (scan_done) scan_done();
     }
-    const std::lock_guard<std::mutex> lock(map_mutex);
-    map.merge(part);
   });
   source.rethrow();
   return map;

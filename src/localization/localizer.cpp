@@ -36,19 +36,27 @@ LocalizerOptions withMethod(LocalizerOptions options) {
   return options;
 }
 
-SourceAligner alignerTo(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options) {
-  if (!map) throw std::invalid_argument("Localizer: the map is a null pointer");
-  if (options.method.segment && !map->labelled()) {
+void requireSegmentedAlike(const MapOrigin& origin, const LocalizerOptions& options) {
+  if (!options.method.segment || options.allow_other_segmentation || !origin.segmentation) return;
+  if (const auto difference = firstDifference(*origin.segmentation, options.segmentation)) {
+    throw std::invalid_argument("segmentation." + difference->field + " = " + difference->second +
+                                ": the scans of the map were segmented with " + difference->first);
+  }
+}
+
+SourceAligner alignerTo(const NdtTarget& target, const LocalizerOptions& options) {
+  if (options.method.segment && !target.labelled()) {
     throw std::invalid_argument("Localizer: method " + options.method.name +
                                 " needs a map with labels, and this one was built without");
   }
-  if (!(map->weighting() == options.method.voxels)) {
-    throw std::invalid_argument("Localizer: the map was read with another VoxelWeighting than that of method " +
-                                options.method.name + ": read it with LocalizationMethod::voxels");
+  if (!(target.weighting() == options.method.voxels)) {
+    throw std::invalid_argument("Localizer: the target was made with another VoxelWeighting than that of method " +
+                                options.method.name + ": make it with LocalizationMethod::voxels");
   }
-  return [map = std::move(map), alignment = withMethod(options).alignment, aligner = NdtAligner()](
+  requireSegmentedAlike(target.origin(), options);
+  return [target, alignment = withMethod(options).alignment, aligner = NdtAligner()](
              const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted) mutable {
-    return aligner.align(*map, source, T_map_base_predicted, alignment);
+    return aligner.align(target, source, T_map_base_predicted, alignment);
   };
 }
 
@@ -62,13 +70,14 @@ void LocalizerOptions::check() const {
   preparationOptions(*this).check();
 }
 
-Localizer::Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options)
-    : Localizer(alignerTo(std::move(map), options), options) {}
+Localizer::Localizer(const WeightedVoxelMap& map, const LocalizerOptions& options)
+    : Localizer(NdtTarget(map, options.method.voxels, options.alignment.threads), options) {}
 
 Localizer::Localizer(const std::string& map_file, const LocalizerOptions& options)
-    : Localizer(std::make_shared<const WeightedVoxelMap>(
-                    WeightedVoxelMap::load(map_file, options.method.voxels, options.alignment.threads)),
-                options) {}
+    : Localizer(NdtTarget::load(map_file, options.method.voxels, options.alignment.threads), options) {}
+
+Localizer::Localizer(const NdtTarget& target, const LocalizerOptions& options)
+    : Localizer(alignerTo(target, options), options) {}
 
 Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
     : options_(withMethod(options)),

@@ -1,201 +1,27 @@
 #include "map/map_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
-#include "common/atomic_output.h"
-#include "map/crc32.h"
-#include "map/map_tile.h"
+#include "map/map_file_layout.h"
+#include "map/map_metadata.h"
 #include "saw_ndt/common/error.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
-constexpr char kMagic[9] = "SAWNDTM\n";
-constexpr std::uint32_t kVersion = 1;
-constexpr std::size_t kHeaderBytes = 96;
-constexpr std::size_t kReservedBytes = 24;
-constexpr std::size_t kTileRecordBytes = 40;
-constexpr std::size_t kEntryBytes = 84;
-constexpr std::uint32_t kLabelledFlag = 1;
+constexpr std::size_t kEntryBytes = sizeof(MapEntryLayout);
+constexpr std::uint64_t kMostEntriesPerPart = 8192;
+constexpr std::uint64_t kMostBytesPerPiece = std::uint64_t{4} << 20U;
 
-class Encoder {
- public:
-  template <typename Integer>
-  void put(Integer value) {
-    using Unsigned = std::make_unsigned_t<Integer>;
-    const auto bits = static_cast<std::uint64_t>(static_cast<Unsigned>(value));
-    char bytes[sizeof(Integer)];
-    for (std::size_t i = 0; i < sizeof(Integer); ++i) bytes[i] = static_cast<char>(bits >> (8 * i));
-    put(bytes, sizeof bytes);
-  }
-  void put(double value) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    put(bits);
-  }
-  void put(const char* bytes, std::size_t size) { bytes_.insert(bytes_.end(), bytes, bytes + size); }
-  void putZeros(std::size_t count) { bytes_.insert(bytes_.end(), count, '\0'); }
-
-  const std::vector<char>& bytes() const { return bytes_; }
-  std::uint32_t checksum() const { return crc32(bytes_.data(), bytes_.size()); }
-
- private:
-  std::vector<char> bytes_;
-};
-
-class Decoder {
- public:
-  explicit Decoder(const char* bytes) : at_(reinterpret_cast<const unsigned char*>(bytes)) {}
-
-  template <typename Integer>
-  Integer take() {
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < sizeof(Integer); ++i) bits |= static_cast<std::uint64_t>(*at_++) << (8 * i);
-    return static_cast<Integer>(bits);
-  }
-  double takeDouble() {
-    const auto bits = take<std::uint64_t>();
-    double value;
-    std::memcpy(&value, &bits, sizeof value);
-    return value;
-  }
-  void skip(std::size_t count) { at_ += count; }
-
- private:
-  const unsigned char* at_;
-};
-
-struct Tile {
-  Eigen::Vector3i coordinate;
-  std::uint32_t checksum = 0;
-  std::uint64_t entry_count = 0;
-  std::uint64_t offset = 0;
-};
-
-struct Header {
-  MapOrigin origin;
-  std::uint64_t entry_count = 0;
-  std::uint64_t tile_count = 0;
-  std::uint32_t directory_checksum = 0;
-};
-
-void encodeEntry(const LabelledVoxelSums& entry, Encoder& encoder) {
-  const Eigen::Vector3i local = entry.voxel - kTileSize * tileOf(entry.voxel);
-  for (const int axis : {0, 1, 2}) encoder.put(static_cast<std::uint8_t>(local[axis]));
-  encoder.put(static_cast<std::uint8_t>(entry.label));
-  encoder.put(entry.sums.count);
-  for (const std::int64_t value : entry.sums.sum) encoder.put(value);
-  for (const std::int64_t value : entry.sums.product) encoder.put(value);
-}
-
-// Reads a file piece by piece; every failure names the file, the offset and the reason.
-class MapReader {
- public:
-  explicit MapReader(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error)) throw Error(path, "", "is a folder, not a map file");
-    if (!stream_) throw Error(path, "", std::string("cannot be opened: ") + std::strerror(errno));
-    size_ = std::filesystem::file_size(path, error);
-    if (error) throw Error(path, "", error.message());
-  }
-
-  std::uint64_t size() const { return size_; }
-
-  [[noreturn]] void fail(std::uint64_t offset, const std::string& reason) const {
-    throw Error(path_, "offset " + std::to_string(offset), reason);
-  }
-
-  void read(std::uint64_t offset, std::size_t count, std::vector<char>& bytes) {
-    if (offset > size_ || count > size_ - offset) {
-      fail(size_, "truncated: " + std::to_string(offset + count) + " bytes expected");
-    }
-    bytes.resize(count);
-    stream_.seekg(static_cast<std::streamoff>(offset));
-    if (!stream_.read(bytes.data(), static_cast<std::streamsize>(count))) fail(offset, "cannot be read");
-  }
-
- private:
-  std::string path_;
-  std::ifstream stream_;
-  std::uint64_t size_ = 0;
-};
-
-Header readHeader(MapReader& reader) {
-  std::vector<char> bytes;
-  const std::size_t magic_size = sizeof kMagic - 1;
-  if (reader.size() < magic_size) reader.fail(0, "not a saw_ndt map: too short");
-  reader.read(0, magic_size, bytes);
-  if (std::memcmp(bytes.data(), kMagic, magic_size) != 0) reader.fail(0, "not a saw_ndt map");
-  reader.read(magic_size, 4, bytes);
-  const auto version = Decoder(bytes.data()).take<std::uint32_t>();
-  if (version != kVersion) {
-    reader.fail(magic_size,
-                "map version " + std::to_string(version) + ", this program reads version " + std::to_string(kVersion));
-  }
-  reader.read(0, kHeaderBytes, bytes);
-  Decoder decoder(bytes.data() + magic_size + 4);
-  Header header;
-  const auto header_bytes = decoder.take<std::uint32_t>();
-  header.origin.resolution_m = decoder.takeDouble();
-  const auto tile_size = decoder.take<std::uint32_t>();
-  const auto flags = decoder.take<std::uint32_t>();
-  header.origin.labelled = (flags & kLabelledFlag) != 0;
-  header.origin.scan_count = decoder.take<std::uint64_t>();
-  header.origin.point_count = decoder.take<std::uint64_t>();
-  header.entry_count = decoder.take<std::uint64_t>();
-  header.tile_count = decoder.take<std::uint64_t>();
-  header.directory_checksum = decoder.take<std::uint32_t>();
-  decoder.skip(kReservedBytes);
-  if (decoder.take<std::uint32_t>() != crc32(bytes.data(), kHeaderBytes - 4)) {
-    reader.fail(kHeaderBytes - 4, "damaged: the header's checksum does not match");
-  }
-  if (header_bytes != kHeaderBytes || tile_size != kTileSize || flags > kLabelledFlag) {
-    reader.fail(12, "damaged: the header states an unknown layout");
-  }
-  if (!(header.origin.resolution_m > 0.0) || !std::isfinite(header.origin.resolution_m)) {
-    reader.fail(16, "damaged: the resolution is not a positive number");
-  }
-  const std::uint64_t body = reader.size() - kHeaderBytes;
-  if (header.tile_count > body / kTileRecordBytes || header.entry_count > body / kEntryBytes ||
-      header.tile_count * kTileRecordBytes + header.entry_count * kEntryBytes != body) {
-    reader.fail(reader.size(), "truncated or damaged: " + std::to_string(header.tile_count) + " tiles and " +
-                                   std::to_string(header.entry_count) + " entries do not make this size");
-  }
-  return header;
-}
-
-std::vector<Tile> readDirectory(MapReader& reader, const Header& header) {
-  std::vector<char> bytes;
-  reader.read(kHeaderBytes, header.tile_count * kTileRecordBytes, bytes);
-  if (crc32(bytes.data(), bytes.size()) != header.directory_checksum) {
-    reader.fail(kHeaderBytes, "damaged: the directory's checksum does not match");
-  }
-  std::vector<Tile> tiles(header.tile_count);
-  Decoder decoder(bytes.data());
-  std::uint64_t offset = kHeaderBytes + bytes.size();
-  for (std::size_t i = 0; i < tiles.size(); ++i) {
-    Tile& tile = tiles[i];
-    for (const int axis : {0, 1, 2}) tile.coordinate[axis] = decoder.take<std::int32_t>();
-    tile.checksum = decoder.take<std::uint32_t>();
-    tile.entry_count = decoder.take<std::uint64_t>();
-    tile.offset = decoder.take<std::uint64_t>();
-    decoder.skip(8);
-    const std::uint64_t record = kHeaderBytes + i * kTileRecordBytes;
-    constexpr int kLimit = 1 << (31 - kTileBits);
-    if ((tile.coordinate.array() < -kLimit).any() || (tile.coordinate.array() >= kLimit).any()) {
-      reader.fail(record, "damaged: a tile lies outside the coordinates that a map can hold");
-    }
-    if (tile.offset != offset || tile.entry_count > (reader.size() - offset) / kEntryBytes) {
-      reader.fail(record, "damaged: a tile does not follow the one before it");
-    }
-    offset += tile.entry_count * kEntryBytes;
-  }
-  return tiles;
+MapEntryLayout entryAt(const MapPart& part, std::size_t i) {
+  MapEntryLayout layout;
+  std::memcpy(&layout, part.bytes + i * kEntryBytes, kEntryBytes);
+  return layout;
 }
 
 // Whether points of a voxel can have these sums: none lies further than half a voxel from its centre. Keeps a file that
@@ -217,106 +43,246 @@ bool canBeSums(const VoxelSums& sums) {
   return true;
 }
 
-void readTile(MapReader& reader, const Tile& tile, MapFileContent& content) {
-  std::vector<char> bytes;
-  reader.read(tile.offset, tile.entry_count * kEntryBytes, bytes);
-  if (crc32(bytes.data(), bytes.size()) != tile.checksum) {
-    reader.fail(tile.offset, "damaged: the checksum of a tile does not match");
+bool decoded(const MapEntryLayout& layout, const Eigen::Vector3i& tile, LabelledVoxelSums& entry) {
+  bool valid = layout.label < kStructuralLabelCount;
+  for (int axis = 0; axis < 3; ++axis) {
+    valid = valid && layout.place[axis] < kTileSize;
+    entry.voxel[axis] = tile[axis] * kTileSize + layout.place[axis];
   }
-  Decoder decoder(bytes.data());
-  for (std::uint64_t i = 0; i < tile.entry_count; ++i) {
-    LabelledVoxelSums entry;
-    bool valid = true;
-    for (const int axis : {0, 1, 2}) {
-      const int local = decoder.take<std::uint8_t>();
-      valid = valid && local < kTileSize;
-      entry.voxel[axis] = tile.coordinate[axis] * kTileSize + local;
-    }
-    const auto label = decoder.take<std::uint8_t>();
-    valid = valid && label < kStructuralLabelCount;
-    entry.label = static_cast<StructuralLabel>(label);
-    entry.sums.count = decoder.take<std::uint64_t>();
-    for (std::int64_t& value : entry.sums.sum) value = decoder.take<std::int64_t>();
-    for (std::int64_t& value : entry.sums.product) value = decoder.take<std::int64_t>();
-    valid = valid && canBeSums(entry.sums) && entry.sums.count <= content.origin.point_count;
-    if (!valid || (!content.entries.empty() && !inMapOrder(content.entries.back(), entry))) {
-      reader.fail(tile.offset + i * kEntryBytes, "damaged: an entry is out of range or out of order");
-    }
-    content.entries.push_back(entry);
-  }
+  entry.label = static_cast<StructuralLabel>(layout.label);
+  entry.sums.count = layout.count.value();
+  for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) entry.sums.sum[i] = layout.sum[i].value();
+  for (std::size_t i = 0; i < entry.sums.product.size(); ++i) entry.sums.product[i] = layout.product[i].value();
+  return valid && canBeSums(entry.sums);
 }
 
 }  // namespace
 
-void writeMapFile(const std::string& path, const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) {
-  struct EncodedTile {
-    Tile tile;
-    Encoder entries;
-  };
-  std::vector<EncodedTile> tiles;
-  for (const LabelledVoxelSums& entry : entries) {
-    const Eigen::Vector3i coordinate = tileOf(entry.voxel);
-    if (tiles.empty() || tiles.back().tile.coordinate != coordinate) {
-      tiles.emplace_back();
-      tiles.back().tile.coordinate = coordinate;
+MapFileReader::MapFileReader(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw Error(path, "", "is a folder, not a map file");
+  if (!stream_) throw Error(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  size_ = std::filesystem::file_size(path, error);
+  if (error) throw Error(path, "", error.message());
+  readMagicAndVersion();
+  readHeader();
+}
+
+void MapFileReader::fail(std::uint64_t offset, const std::string& reason) const {
+  throw Error(path_, "offset " + std::to_string(offset), reason);
+}
+
+void MapFileReader::read(std::uint64_t offset, std::size_t count, std::vector<char>& bytes) {
+  if (offset > size_ || count > size_ - offset) {
+    fail(size_, "truncated: " + std::to_string(offset + count) + " bytes expected");
+  }
+  bytes.resize(count);
+  stream_.seekg(static_cast<std::streamoff>(offset));
+  if (!stream_.read(bytes.data(), static_cast<std::streamsize>(count))) fail(offset, "cannot be read");
+}
+
+template <typename Layout>
+Layout MapFileReader::read(std::uint64_t offset) {
+  std::vector<char> bytes;
+  read(offset, sizeof(Layout), bytes);
+  Layout layout;
+  std::memcpy(&layout, bytes.data(), sizeof(Layout));
+  return layout;
+}
+
+void MapFileReader::readMagicAndVersion() {
+  constexpr std::size_t kMagicSize = sizeof kMapMagic - 1;
+  if (size_ < kMagicSize) fail(0, "not a saw_ndt map: too short");
+  std::vector<char> magic;
+  read(0, kMagicSize, magic);
+  if (std::memcmp(magic.data(), kMapMagic, kMagicSize) != 0) fail(0, "not a saw_ndt map");
+  version_ = read<boost::endian::little_uint32_buf_t>(kMagicSize).value();
+  if (version_ < kFirstMapVersion || version_ > kMapVersion) {
+    fail(kMagicSize, "map version " + std::to_string(version_) + ", this program reads versions " +
+                         std::to_string(kFirstMapVersion) + " and " + std::to_string(kMapVersion));
+  }
+}
+
+void MapFileReader::readHeader() {
+  const auto header = read<MapHeaderLayout>(0);
+  if (header.checksum.value() != checksumOf(&header, offsetof(MapHeaderLayout, checksum))) {
+    fail(offsetof(MapHeaderLayout, checksum), "damaged: the header's checksum does not match");
+  }
+  if (header.header_bytes.value() != sizeof header || header.tile_size.value() != kTileSize ||
+      header.flags.value() > kLabelledFlag) {
+    fail(offsetof(MapHeaderLayout, header_bytes), "damaged: the header states an unknown layout");
+  }
+  origin_.resolution_m = header.resolution_m.value();
+  if (!(origin_.resolution_m > 0.0) || !std::isfinite(origin_.resolution_m)) {
+    fail(offsetof(MapHeaderLayout, resolution_m), "damaged: the resolution is not a positive number");
+  }
+  origin_.labelled = header.flags.value() == kLabelledFlag;
+  origin_.scan_count = header.scan_count.value();
+  origin_.point_count = header.point_count.value();
+  entry_count_ = header.entry_count.value();
+  const std::uint64_t tile_count = header.tile_count.value();
+  const std::uint32_t metadata_bytes = version_ == kFirstMapVersion ? 0 : header.metadata_bytes.value();
+  const std::uint64_t body = size_ - sizeof header;
+  if (metadata_bytes > body || tile_count > (body - metadata_bytes) / sizeof(MapTileLayout) ||
+      entry_count_ > body / kEntryBytes ||
+      metadata_bytes + tile_count * sizeof(MapTileLayout) + entry_count_ * kEntryBytes != body) {
+    fail(size_, "truncated or damaged: " + std::to_string(metadata_bytes) + " bytes of metadata, " +
+                    std::to_string(tile_count) + " tiles and " + std::to_string(entry_count_) +
+                    " entries do not make this size");
+  }
+  if (version_ != kFirstMapVersion) readMetadata(metadata_bytes, header.metadata_checksum.value());
+  directory_offset_ = sizeof header + metadata_bytes;
+  readDirectory(tile_count, header.directory_checksum.value());
+}
+
+void MapFileReader::readMetadata(std::uint32_t size, std::uint32_t checksum) {
+  constexpr std::uint64_t kOffset = sizeof(MapHeaderLayout);
+  std::vector<char> bytes;
+  read(kOffset, size, bytes);
+  if (checksumOf(bytes.data(), bytes.size()) != checksum) {
+    fail(kOffset, "damaged: the metadata's checksum does not match");
+  }
+  if (const auto fault = internal::readMetadata({bytes.data(), bytes.size()}, origin_)) {
+    fail(kOffset + fault->offset, fault->reason);
+  }
+}
+
+void MapFileReader::readDirectory(std::uint64_t tile_count, std::uint32_t checksum) {
+  std::vector<char> bytes;
+  read(directory_offset_, tile_count * sizeof(MapTileLayout), bytes);
+  if (checksumOf(bytes.data(), bytes.size()) != checksum) {
+    fail(directory_offset_, "damaged: the directory's checksum does not match");
+  }
+  tiles_.resize(tile_count);
+  std::uint64_t offset = directory_offset_ + bytes.size(), entry_count = 0;
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    MapTileLayout layout;
+    std::memcpy(&layout, bytes.data() + i * sizeof layout, sizeof layout);
+    Tile& tile = tiles_[i];
+    for (int axis = 0; axis < 3; ++axis) tile.coordinate[axis] = layout.coordinate[axis].value();
+    tile.checksum = layout.checksum.value();
+    tile.entry_count = layout.entry_count.value();
+    tile.offset = layout.offset.value();
+    const std::uint64_t record = directory_offset_ + i * sizeof layout;
+    constexpr int kLimit = 1 << (31 - kTileBits);
+    if ((tile.coordinate.array() < -kLimit).any() || (tile.coordinate.array() >= kLimit).any()) {
+      fail(record, "damaged: a tile lies outside the coordinates that a map can hold");
     }
-    encodeEntry(entry, tiles.back().entries);
-    ++tiles.back().tile.entry_count;
+    const auto by_z_y_x = [](const Tile& t) { return Eigen::Vector3i(t.coordinate.reverse()); };
+    if (tile.offset != offset || tile.entry_count > (size_ - offset) / kEntryBytes) {
+      fail(record, "damaged: a tile does not follow the one before it");
+    }
+    if (i > 0) {
+      const Eigen::Vector3i before = by_z_y_x(tiles_[i - 1]), here = by_z_y_x(tile);
+      if (!std::lexicographical_compare(before.data(), before.data() + 3, here.data(), here.data() + 3)) {
+        fail(record, "damaged: a tile is out of order");
+      }
+    }
+    offset += tile.entry_count * kEntryBytes;
+    entry_count += tile.entry_count;
   }
-
-  Encoder directory;
-  std::uint64_t offset = kHeaderBytes + tiles.size() * kTileRecordBytes;
-  for (const EncodedTile& encoded : tiles) {
-    for (const int axis : {0, 1, 2}) directory.put(encoded.tile.coordinate[axis]);
-    directory.put(encoded.entries.checksum());
-    directory.put(encoded.tile.entry_count);
-    directory.put(offset);
-    directory.putZeros(8);
-    offset += encoded.entries.bytes().size();
+  if (entry_count != entry_count_) {
+    fail(directory_offset_, "damaged: the directory and the header disagree on the number of entries");
   }
-
-  Encoder header;
-  header.put(kMagic, sizeof kMagic - 1);
-  header.put(kVersion);
-  header.put(static_cast<std::uint32_t>(kHeaderBytes));
-  header.put(origin.resolution_m);
-  header.put(static_cast<std::uint32_t>(kTileSize));
-  header.put(origin.labelled ? kLabelledFlag : std::uint32_t{0});
-  header.put(origin.scan_count);
-  header.put(origin.point_count);
-  header.put(static_cast<std::uint64_t>(entries.size()));
-  header.put(static_cast<std::uint64_t>(tiles.size()));
-  header.put(directory.checksum());
-  header.putZeros(kReservedBytes);
-  header.put(header.checksum());
-
-  AtomicOutput output(path);
-  const auto write = [&output](const Encoder& encoder) {
-    output.stream().write(encoder.bytes().data(), static_cast<std::streamsize>(encoder.bytes().size()));
-  };
-  write(header);
-  write(directory);
-  for (const EncodedTile& encoded : tiles) write(encoded.entries);
-  output.commit();
 }
 
-MapFileContent readMapFile(const std::string& path) {
-  MapReader reader(path);
-  const Header header = readHeader(reader);
-  MapFileContent content;
-  content.origin = header.origin;
-  const std::vector<Tile> tiles = readDirectory(reader, header);
-  content.entries.reserve(header.entry_count);
-  for (const Tile& tile : tiles) readTile(reader, tile, content);
-  if (content.entries.size() != header.entry_count) {
-    reader.fail(kHeaderBytes, "damaged: the directory and the header disagree on the number of entries");
+std::uint64_t MapFileReader::endOfNextPiece() const {
+  const std::uint64_t begin = tiles_[next_tile_].offset + entries_of_tile_read_ * kEntryBytes;
+  std::uint64_t end = begin, read = entries_of_tile_read_;
+  for (std::size_t t = next_tile_; t < tiles_.size();) {
+    const std::uint64_t count = std::min(tiles_[t].entry_count - read, kMostEntriesPerPart);
+    if (end > begin && end + count * kEntryBytes - begin > kMostBytesPerPiece) break;
+    end += count * kEntryBytes;
+    read += count;
+    if (read == tiles_[t].entry_count) {
+      read = 0;
+      ++t;
+    }
   }
-  std::uint64_t point_count = 0;
-  for (const LabelledVoxelSums& entry : content.entries) point_count += entry.sums.count;
-  if (point_count != content.origin.point_count) {
-    reader.fail(kHeaderBytes, "damaged: the entries and the header disagree on the number of points");
-  }
-  return content;
+  return end;
 }
 
-}  // namespace saw_ndt
+bool MapFileReader::readPiece(MapPiece& piece) {
+  piece.parts.clear();
+  while (next_tile_ < tiles_.size() && tiles_[next_tile_].entry_count == 0) ++next_tile_;
+  if (next_tile_ == tiles_.size()) {
+    checkEnd();
+    return false;
+  }
+  const std::uint64_t begin = tiles_[next_tile_].offset + entries_of_tile_read_ * kEntryBytes;
+  const std::uint64_t end = endOfNextPiece();
+  read(begin, end - begin, piece.bytes);
+  for (std::uint64_t offset = begin; offset < end;) {
+    const Tile& tile = tiles_[next_tile_];
+    const std::uint64_t left = tile.entry_count - entries_of_tile_read_;
+    MapPart part;
+    part.tile = next_tile_;
+    part.offset = offset;
+    part.bytes = piece.bytes.data() + (offset - begin);
+    part.entry_count = std::min({left, kMostEntriesPerPart, (end - offset) / kEntryBytes});
+    part.whole_tile = part.entry_count == tile.entry_count;
+    if (part.entry_count < left) {
+      // The last voxel may go on behind the part: it is left to the next one.
+      const std::uint32_t last = entryAt(part, part.entry_count - 1).order() >> 8U;
+      std::size_t count = part.entry_count;
+      while (count > 0 && entryAt(part, count - 1).order() >> 8U == last) --count;
+      if (count == 0) {
+        if (offset > begin) break;
+        fail(offset, "damaged: a voxel has more labels than there are");
+      }
+      part.entry_count = count;
+    }
+    if (!part.whole_tile) continueTile(part);
+    entries_of_tile_read_ += part.entry_count;
+    offset += part.entry_count * kEntryBytes;
+    if (entries_of_tile_read_ == tile.entry_count) {
+      entries_of_tile_read_ = 0;
+      do ++next_tile_;
+      while (next_tile_ < tiles_.size() && tiles_[next_tile_].entry_count == 0);
+    }
+    piece.parts.push_back(part);
+  }
+  return true;
+}
+
+// Checks what no part of a tile can tell alone.
+void MapFileReader::continueTile(const MapPart& part) {
+  const Tile& tile = tiles_[part.tile];
+  const bool first = entries_of_tile_read_ == 0;
+  checksum_of_tile_ = checksumOf(part.bytes, part.entry_count * kEntryBytes, first ? 0 : checksum_of_tile_);
+  if (!first && entryAt(part, 0).order() <= last_place_in_tile_) {
+    fail(part.offset, "damaged: an entry is out of range or out of order");
+  }
+  last_place_in_tile_ = entryAt(part, part.entry_count - 1).order();
+  if (entries_of_tile_read_ + part.entry_count == tile.entry_count && checksum_of_tile_ != tile.checksum) {
+    fail(tile.offset, "damaged: the checksum of a tile does not match");
+  }
+}
+
+void MapFileReader::decode(const MapPart& part, std::vector<LabelledVoxelSums>& entries) {
+  const Tile& tile = tiles_[part.tile];
+  if (part.whole_tile && checksumOf(part.bytes, part.entry_count * kEntryBytes) != tile.checksum) {
+    fail(part.offset, "damaged: the checksum of a tile does not match");
+  }
+  entries.resize(part.entry_count);
+  std::uint64_t points = 0;
+  std::uint32_t before = 0;
+  for (std::size_t i = 0; i < part.entry_count; ++i) {
+    const MapEntryLayout layout = entryAt(part, i);
+    if (!decoded(layout, tile.coordinate, entries[i]) || entries[i].sums.count > origin_.point_count ||
+        (i > 0 && layout.order() <= before)) {
+      fail(part.offset + i * kEntryBytes, "damaged: an entry is out of range or out of order");
+    }
+    before = layout.order();
+    points += entries[i].sums.count;
+  }
+  points_ += points;
+}
+
+void MapFileReader::checkEnd() const {
+  if (points_ != origin_.point_count) {
+    fail(directory_offset_, "damaged: the entries and the header disagree on the number of points");
+  }
+}
+
+}  // namespace saw_ndt::internal

@@ -6,7 +6,7 @@
 
 #include "map/map_tile.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 struct Key {
@@ -85,4 +85,4 @@ void sortIntoMapOrder(std::vector<LabelledVoxelSums>& entries) {
   entries.swap(sorted);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -2,7 +2,7 @@
 
 #include "saw_ndt/map/voxel_sums.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Maps are laid out in cubic tiles, so that a region can be read without the rest.
 constexpr int kTileBits = 6;
@@ -26,4 +26,4 @@ inline bool inMapOrder(const LabelledVoxelSums& a, const LabelledVoxelSums& b) {
   return a.label < b.label;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

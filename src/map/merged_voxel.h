@@ -5,7 +5,7 @@
 
 #include "saw_ndt/map/voxel_statistics.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// The points of one voxel, its labels put together.
 struct MergedVoxel {
@@ -18,4 +18,4 @@ struct MergedVoxel {
 void appendVoxelStatistics(const MergedVoxel* voxels, std::size_t count, const VoxelWeighting& weighting,
                            double metres_per_step, std::vector<VoxelStatistics>& statistics);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -5,7 +5,7 @@
 #include "common/vector_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -104,11 +104,11 @@ void decompose(SymmetricMatrices& matrices, std::size_t count) {
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 HWY_EXPORT(decompose);
 
@@ -120,5 +120,5 @@ void findEigenvectors(SymmetricMatrices& matrices, std::size_t count) {
   SAW_NDT_DISPATCH(decompose)(matrices, count);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 #endif

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Symmetric 3 x 3 matrices side by side, and what is found of them.
 struct SymmetricMatrices {
@@ -18,4 +18,4 @@ struct SymmetricMatrices {
 /// of a matrix does not depend on those beside it. Elements must be finite; they are left as they are.
 void findEigenvectors(SymmetricMatrices& matrices, std::size_t count);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -2,7 +2,7 @@
 
 #include "map/voxel_sums_table.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 // The bricks, relative to a voxel's own, whose border repeats the cell at `local` along one axis.
@@ -11,7 +11,8 @@ struct BrickRange {
 };
 BrickRange bricksThatHold(int local) { return {local == 0 ? -1 : 0, local == VoxelIndex::kBrickSize - 1 ? 1 : 0}; }
 
-// Calls visit(brick, place of the voxel's cell in it) for every brick that holds a voxel, in its border or not.
+// Calls visit(brick, row of the voxel in it, place of the voxel in the row) for every brick that holds a voxel, in its
+// border or not.
 template <typename Visit>
 void forEachBrickWith(const VoxelCoordinate& voxel, const Visit& visit) {
   const Eigen::Vector3i brick(voxel.x() >> VoxelIndex::kBrickBits, voxel.y() >> VoxelIndex::kBrickBits,
@@ -22,7 +23,8 @@ void forEachBrickWith(const VoxelCoordinate& voxel, const Visit& visit) {
     for (int dy = ys.first; dy <= ys.last; ++dy) {
       for (int dx = xs.first; dx <= xs.last; ++dx) {
         const Eigen::Vector3i at = local - VoxelIndex::kBrickSize * Eigen::Vector3i(dx, dy, dz);
-        visit(brick + Eigen::Vector3i(dx, dy, dz), VoxelIndex::neighbourOffset(at.x() + 1, at.y() + 1, at.z() + 1));
+        visit(brick + Eigen::Vector3i(dx, dy, dz), VoxelIndex::rowOffset(at.y() + 1, at.z() + 1),
+              static_cast<std::uint32_t>(at.x()) + 1U);
       }
     }
   }
@@ -30,66 +32,93 @@ void forEachBrickWith(const VoxelCoordinate& voxel, const Visit& visit) {
 
 }  // namespace
 
-VoxelIndex::VoxelIndex(const std::vector<VoxelCoordinate>& voxels) : slots_(64) {
-  // The bricks are counted first, so that their memory is taken once and never moved. Voxels that follow each other
-  // often touch the same one.
+VoxelIndex::VoxelIndex(const std::vector<VoxelCoordinate>& voxels) : slots_(64), voxel_count_(voxels.size()) {
+  // Voxels that follow each other often touch the same brick.
   Eigen::Vector3i latest = Eigen::Vector3i::Zero();
-  bool any = false;
+  Brick* brick = nullptr;
+  const auto move = [&](const Eigen::Vector3i& at) {
+    if (brick != nullptr && at == latest) return;
+    brick = &madeBrick(at);
+    latest = at;
+  };
   for (const VoxelCoordinate& voxel : voxels) {
-    forEachBrickWith(voxel, [&](const Eigen::Vector3i& brick, std::ptrdiff_t) {
-      if (any && brick == latest) return;
-      makeBrick(brick);
-      latest = brick;
-      any = true;
+    forEachBrickWith(voxel, [&](const Eigen::Vector3i& at, std::ptrdiff_t row, std::uint32_t x) {
+      move(at);
+      brick->rows[row].bits_ |= 1U << x;
     });
   }
-  cells_.assign(brick_count_ * kCellsPerBrick, kNone);
-  any = false;
-  std::int32_t* cells = nullptr;
+  std::uint32_t total = 0;
+  for (Brick& counted : bricks_) {
+    counted.first = total;
+    std::uint32_t rank = 0;
+    for (Row& row : counted.rows) {
+      const std::uint32_t count = countOfTenBits(row.bits_);
+      row.bits_ |= rank << Row::kRankShift;
+      rank += count;
+    }
+    total += rank;
+  }
+  numbers_.assign(total + 1U, 0);
   for (std::size_t number = 0; number < voxels.size(); ++number) {
-    forEachBrickWith(voxels[number], [&](const Eigen::Vector3i& brick, std::ptrdiff_t cell) {
-      if (!any || brick != latest) {
-        cells = cells_.data() + static_cast<std::size_t>(slots_[slotOf(brick)].number) * kCellsPerBrick;
-        latest = brick;
-        any = true;
-      }
-      cells[cell] = static_cast<std::int32_t>(number);
+    forEachBrickWith(voxels[number], [&](const Eigen::Vector3i& at, std::ptrdiff_t row, std::uint32_t x) {
+      move(at);
+      numbers_[brick->first + brick->rows[row].rank(x)] = static_cast<std::int32_t>(number);
     });
   }
 }
 
 std::int32_t VoxelIndex::find(const VoxelCoordinate& voxel) const {
   Cursor cursor;
-  const std::int32_t* found = cell(voxel, cursor);
-  return found == nullptr ? kNone : *found;
+  const Place found = place(voxel, cursor);
+  return found ? found.number(0, 0, 0) : kNone;
 }
 
-std::size_t VoxelIndex::slotOf(const Eigen::Vector3i& brick) const {
+std::vector<VoxelCoordinate> VoxelIndex::voxels() const {
+  std::vector<VoxelCoordinate> voxels(voxel_count_);
+  for (const Slot& slot : slots_) {
+    if (slot.number == kNone) continue;
+    const Brick& brick = bricks_[static_cast<std::size_t>(slot.number)];
+    for (int z = 0; z < kBrickSize; ++z) {
+      for (int y = 0; y < kBrickSize; ++y) {
+        const Row& row = brick.rows[rowOffset(y + 1, z + 1)];
+        for (int x = 0; x < kBrickSize; ++x) {
+          const auto place = static_cast<std::uint32_t>(x) + 1U;
+          if (row.has(place) == 0) continue;
+          voxels[static_cast<std::size_t>(numbers_[brick.first + row.rank(place)])] =
+              slot.at * kBrickSize + Eigen::Vector3i(x, y, z);
+        }
+      }
+    }
+  }
+  return voxels;
+}
+
+std::size_t VoxelIndex::slotOf(const Eigen::Vector3i& at) const {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = hashCoordinate(brick) & mask;
-  while (slots_[slot].number != kNone && slots_[slot].brick != brick) slot = (slot + 1) & mask;
+  std::size_t slot = hashCoordinate(at) & mask;
+  while (slots_[slot].number != kNone && slots_[slot].at != at) slot = (slot + 1) & mask;
   return slot;
 }
 
-const std::int32_t* VoxelIndex::cellsOf(const Eigen::Vector3i& brick) const {
+const VoxelIndex::Brick* VoxelIndex::brickAt(const Eigen::Vector3i& at) const {
   if (slots_.empty()) return nullptr;
-  const std::int32_t number = slots_[slotOf(brick)].number;
-  return number == kNone ? nullptr : cells_.data() + static_cast<std::size_t>(number) * kCellsPerBrick;
+  const std::int32_t number = slots_[slotOf(at)].number;
+  return number == kNone ? nullptr : bricks_.data() + number;
 }
 
-void VoxelIndex::makeBrick(const Eigen::Vector3i& brick) {
-  std::size_t slot = slotOf(brick);
-  if (slots_[slot].number != kNone) return;
-  if (2 * (brick_count_ + 1) > slots_.size()) {
+VoxelIndex::Brick& VoxelIndex::madeBrick(const Eigen::Vector3i& at) {
+  std::size_t slot = slotOf(at);
+  if (slots_[slot].number != kNone) return bricks_[static_cast<std::size_t>(slots_[slot].number)];
+  if (2 * (bricks_.size() + 1) > slots_.size()) {
     std::vector<Slot> old(2 * slots_.size());
     old.swap(slots_);
     for (const Slot& entry : old) {
-      if (entry.number != kNone) slots_[slotOf(entry.brick)] = entry;
+      if (entry.number != kNone) slots_[slotOf(entry.at)] = entry;
     }
-    slot = slotOf(brick);
+    slot = slotOf(at);
   }
-  slots_[slot] = {brick, static_cast<std::int32_t>(brick_count_)};
-  ++brick_count_;
+  slots_[slot] = {at, static_cast<std::int32_t>(bricks_.size())};
+  return bricks_.emplace_back();
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -5,7 +5,7 @@
 #include "common/vector_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -228,11 +228,11 @@ std::size_t findRuns(const PointPlacement& placement, PointBlock& block) {
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 HWY_EXPORT(findRuns);
 
@@ -240,5 +240,5 @@ std::size_t findVoxelRuns(const PointPlacement& placement, PointBlock& block) {
   return SAW_NDT_DISPATCH(findRuns)(placement, block);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 #endif

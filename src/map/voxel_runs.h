@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// How points become voxels.
 struct PointPlacement {
@@ -45,4 +45,4 @@ struct PointBlock {
 /// @return the number of runs
 std::size_t findVoxelRuns(const PointPlacement& placement, PointBlock& block);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -8,6 +8,7 @@
 
 namespace saw_ndt {
 namespace {
+using namespace internal;
 
 std::int64_t rounded(double value) { return static_cast<std::int64_t>(value < 0.0 ? value - 0.5 : value + 0.5); }
 
@@ -81,8 +82,8 @@ StructureClass structureClass(const Eigen::Vector3d& eigenvalues) {
   return planar >= volumetric ? StructureClass::Planar : StructureClass::Volumetric;
 }
 
-void appendVoxelStatistics(const MergedVoxel* voxels, std::size_t count, const VoxelWeighting& weighting,
-                           double metres_per_step, std::vector<VoxelStatistics>& statistics) {
+void internal::appendVoxelStatistics(const MergedVoxel* voxels, std::size_t count, const VoxelWeighting& weighting,
+                                     double metres_per_step, std::vector<VoxelStatistics>& statistics) {
   const auto least_count = static_cast<std::uint64_t>(weighting.min_points_per_voxel);
   SymmetricMatrices matrices;
   for (std::size_t next = 0; next < count;) {

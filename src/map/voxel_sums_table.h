@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "saw_ndt/map/voxel_sums.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// A well-mixed hash of three voxel or brick coordinates.
 inline std::uint64_t hashCoordinate(const Eigen::Vector3i& c) {
@@ -47,6 +48,11 @@ class VoxelSumsTable {
 
   /// The entries in the order in which their voxels were first met.
   const std::vector<LabelledVoxelSums>& entries() const { return entries_; }
+  /// The same, moved out. The table is empty afterwards.
+  std::vector<LabelledVoxelSums> takeEntries() {
+    slots_ = std::vector<Slot>(kLeastSlots);
+    return std::exchange(entries_, {});
+  }
 
  private:
   static constexpr std::size_t kLeastSlots = 1024;  // a power of two
@@ -77,4 +83,4 @@ class VoxelSumsTable {
   std::vector<LabelledVoxelSums> entries_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

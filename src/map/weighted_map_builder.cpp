@@ -1,17 +1,21 @@
 #include "saw_ndt/map/weighted_map_builder.h"
 
 #include <algorithm>
-#include <cmath>
-#include <exception>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/executor.h"
 #include "map/voxel_runs.h"
+#include "map/voxel_sums_table.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/version.h"
 
 namespace saw_ndt {
 namespace {
+using namespace internal;
 
 // Fewer points are not worth another thread's table.
 constexpr std::size_t kLeastPointsPerThread = 20000;
@@ -61,14 +65,41 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
   return count;
 }
 
-}  // namespace
-
-WeightedMapBuilder::WeightedMapBuilder(double resolution_m) {
-  checkOption(resolution_m > 0.0 && std::isfinite(resolution_m), "resolution_m", resolution_m, "positive");
-  origin_.resolution_m = resolution_m;
+void requireSameSegmentation(const std::optional<SegmentationOptions>& into,
+                             const std::optional<SegmentationOptions>& from) {
+  if (into.has_value() != from.has_value()) {
+    throw std::invalid_argument("segmentation: known of one of the builders to merge and not known of the other");
+  }
+  if (!into) return;
+  if (const auto difference = firstDifference(*into, *from)) {
+    throw std::invalid_argument("segmentation: the builders to merge differ in " + difference->field + ", which is " +
+                                difference->first + " in one and " + difference->second + " in the other");
+  }
 }
 
+}  // namespace
+
+WeightedMapBuilder::WeightedMapBuilder(double resolution_m, std::optional<SegmentationOptions> segmentation)
+    : table_(std::make_unique<VoxelSumsTable>()) {
+  origin_.resolution_m = resolution_m;
+  origin_.segmentation = std::move(segmentation);
+  origin_.software_version = SAW_NDT_VERSION;
+  origin_.check();
+}
+
+WeightedMapBuilder::~WeightedMapBuilder() = default;
+WeightedMapBuilder::WeightedMapBuilder(const WeightedMapBuilder& other)
+    : origin_(other.origin_), table_(std::make_unique<VoxelSumsTable>(*other.table_)) {}
+WeightedMapBuilder::WeightedMapBuilder(WeightedMapBuilder&& other) noexcept = default;
+WeightedMapBuilder& WeightedMapBuilder::operator=(const WeightedMapBuilder& other) {
+  return *this = WeightedMapBuilder(other);
+}
+WeightedMapBuilder& WeightedMapBuilder::operator=(WeightedMapBuilder&& other) noexcept = default;
+
 void WeightedMapBuilder::requireKind(bool labelled) {
+  if (!labelled && origin_.segmentation) {
+    throw std::invalid_argument("the segmentation of the scans has been given, but a scan has no labels");
+  }
   if (origin_.scan_count == 0) {
     origin_.labelled = labelled;
   } else if (origin_.labelled != labelled) {
@@ -86,28 +117,20 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
   const int part_count =
       static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(internal::threadCount(threads)), most_parts));
   if (part_count == 1) {
-    origin_.point_count += addRange(points, labels, 0, points.size, placement, table_);
+    origin_.point_count += addRange(points, labels, 0, points.size, placement, *table_);
     return;
   }
   struct Part {
     VoxelSumsTable table;
     std::uint64_t point_count = 0;
-    std::exception_ptr failure;
   };
   std::vector<Part> parts(static_cast<std::size_t>(part_count));
-#pragma omp parallel for num_threads(part_count) schedule(static)
-  for (int p = 0; p < part_count; ++p) {
-    Part& part = parts[static_cast<std::size_t>(p)];
-    const auto start = [&](int number) { return points.size * static_cast<std::size_t>(number) / part_count; };
-    try {
-      part.point_count = addRange(points, labels, start(p), start(p + 1), placement, part.table);
-    } catch (...) {
-      part.failure = std::current_exception();
-    }
-  }
+  forEachChunk(threads, parts.size(), [&](std::size_t p, int) {
+    const auto start = [&](std::size_t number) { return points.size * number / parts.size(); };
+    parts[p].point_count = addRange(points, labels, start(p), start(p + 1), placement, parts[p].table);
+  });
   for (const Part& part : parts) {
-    if (part.failure) std::rethrow_exception(part.failure);
-    table_.add(part.table);
+    table_->add(part.table);
     origin_.point_count += part.point_count;
   }
 }
@@ -115,15 +138,20 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
 void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
   checkOption(other.origin_.resolution_m == origin_.resolution_m, "resolution_m", other.origin_.resolution_m,
               "that of the builder merged into");
+  requireSameSegmentation(origin_.segmentation, other.origin_.segmentation);
   if (other.origin_.scan_count == 0) return;
   requireKind(other.origin_.labelled);
-  table_.add(other.table_);
+  table_->add(*other.table_);
   origin_.scan_count += other.origin_.scan_count;
   origin_.point_count += other.origin_.point_count;
 }
 
-WeightedVoxelMap WeightedMapBuilder::build(const VoxelWeighting& weighting, int threads) const {
-  return {origin_, table_.entries(), weighting, threads};
+WeightedVoxelMap WeightedMapBuilder::build() const& { return {origin_, table_->entries()}; }
+
+WeightedVoxelMap WeightedMapBuilder::build() && {
+  const MapOrigin origin = origin_;
+  origin_.scan_count = origin_.point_count = 0;
+  return {origin, table_->takeEntries()};
 }
 
 }  // namespace saw_ndt

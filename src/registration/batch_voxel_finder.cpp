@@ -1,12 +1,26 @@
 #include "registration/batch_voxel_finder.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 namespace saw_ndt {
 namespace {
 
-template <NeighborhoodSearchMethod method>
-constexpr std::array<Neighbour, kNeighbourCount<method>> kNeighbours = neighbours<method>();
+// Neighbours that have the same y and z, in the order of their places in a row.
+struct NeighbourRow {
+  int dy, dz;
+  bool whole;  // dx is -1, 0 and 1, otherwise 0
+};
+
+// Four floats are read of a cell and written of a voxel at once.
+static_assert(offsetof(internal::PackedNdtCell, mean_from_centre) == 0 && alignof(internal::PackedNdtCell) >= 16);
+static_assert(offsetof(RunVoxel, mean) == 0 && sizeof(RunVoxel) == 16 && alignof(RunVoxel) == 16);
+
+constexpr NeighbourRow kOwnVoxel[] = {{0, 0, false}};
+constexpr NeighbourRow kSharedFaces[] = {{0, -1, false}, {-1, 0, false}, {0, 0, true}, {1, 0, false}, {0, 1, false}};
+constexpr NeighbourRow kAllAround[] = {{-1, -1, true}, {0, -1, true}, {1, -1, true}, {-1, 0, true}, {0, 0, true},
+                                       {1, 0, true},   {-1, 1, true}, {0, 1, true},  {1, 1, true}};
 
 }  // namespace
 
@@ -24,28 +38,9 @@ AnchoredPose::AnchoredPose(const Eigen::Isometry3d& T_map_source, double resolut
   pose.inverse_resolution = static_cast<float>(1.0 / resolution_m);
 }
 
-BatchVoxelFinder::BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMethod method,
+BatchVoxelFinder::BatchVoxelFinder(const internal::NdtLevel& level, NeighborhoodSearchMethod method,
                                    const Eigen::Isometry3d& T_map_source)
-    : level_(level) {
-  const auto take = [this, &level](const auto& all) {
-    const auto resolution_m = static_cast<float>(level.resolution());
-    for (const Neighbour& n : all) {
-      shifts_[neighbour_count_++] = {n.offset, static_cast<float>(n.dx) * resolution_m,
-                                     static_cast<float>(n.dy) * resolution_m, static_cast<float>(n.dz) * resolution_m};
-    }
-  };
-  switch (method) {
-    case NeighborhoodSearchMethod::DIRECT1:
-      take(kNeighbours<NeighborhoodSearchMethod::DIRECT1>);
-      break;
-    case NeighborhoodSearchMethod::DIRECT7:
-      take(kNeighbours<NeighborhoodSearchMethod::DIRECT7>);
-      break;
-    case NeighborhoodSearchMethod::DIRECT26:
-    case NeighborhoodSearchMethod::RADIUS:
-      take(kNeighbours<NeighborhoodSearchMethod::DIRECT26>);
-      break;
-  }
+    : level_(level), method_(method) {
   const AnchoredPose anchored(T_map_source, level.resolution());
   origin_ = anchored.origin;
   pose_ = anchored.pose;
@@ -67,27 +62,61 @@ void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_
 }
 
 void BatchVoxelFinder::findVoxels(BatchScratch& scratch) const {
-  VoxelIndex::Cursor cursor;
+  switch (method_) {
+    case NeighborhoodSearchMethod::DIRECT1:
+      return findVoxelsIn(kOwnVoxel, scratch);
+    case NeighborhoodSearchMethod::DIRECT7:
+      return findVoxelsIn(kSharedFaces, scratch);
+    case NeighborhoodSearchMethod::DIRECT26:
+    case NeighborhoodSearchMethod::RADIUS:
+      return findVoxelsIn(kAllAround, scratch);
+  }
+}
+
+template <typename NeighbourRows>
+void BatchVoxelFinder::findVoxelsIn(const NeighbourRows& neighbour_rows, BatchScratch& scratch) const {
+  internal::VoxelIndex::Cursor cursor;
   const BatchPoints& points = scratch.points;
-  const PackedNdtCell* const cells = level_.packedCells().data();
+  const internal::PackedNdtCell* const cells = level_.packedCells().data();
+  // Four lanes at a time, where a neighbour's own voxel lies from that of the run (m); the last lane is written over.
+  const auto edge_m = static_cast<float>(level_.resolution());
+  std::array<Eigen::Array4f, kMostNeighbours> shifts_m;
+  std::size_t neighbour_count = 0;
+  for (const NeighbourRow& row : neighbour_rows) {
+    for (int dx = row.whole ? -1 : 0; dx <= (row.whole ? 1 : 0); ++dx) {
+      shifts_m[neighbour_count++] = Eigen::Array4f(static_cast<float>(dx) * edge_m, static_cast<float>(row.dy) * edge_m,
+                                                   static_cast<float>(row.dz) * edge_m, 0.0F);
+    }
+  }
   RunVoxel* voxel = scratch.voxels.voxels;
   for (std::size_t run = 0; run < points.run_count; ++run) {
     scratch.voxels.first[run] = static_cast<std::uint32_t>(voxel - scratch.voxels.voxels);
     const auto start = static_cast<std::size_t>(points.run_starts[run]);
     const VoxelCoordinate own(points.voxel[0][start], points.voxel[1][start], points.voxel[2][start]);
-    const std::int32_t* const numbers = level_.index().cell(own + origin_, cursor);
-    if (numbers == nullptr) continue;
+    const internal::VoxelIndex::Place place = level_.index().place(own + origin_, cursor);
+    if (!place) continue;
+    const Eigen::Array4f* shift_m = shifts_m.data();
     // Whether a neighbour exists is as good as random: each is written, and kept by moving on. Voxel 0 stands for none.
-    for (std::size_t n = 0; n < neighbour_count_; ++n) {
-      const Shift& shift = shifts_[n];
-      const std::int32_t number = numbers[shift.offset];
-      const std::int32_t kept = number & ~(number >> 31);
-      const float* const mean = cells[kept].mean_from_centre;
-      voxel->mean[0] = mean[0] + shift.x_m;
-      voxel->mean[1] = mean[1] + shift.y_m;
-      voxel->mean[2] = mean[2] + shift.z_m;
-      voxel->number = static_cast<std::uint32_t>(kept);
-      voxel += number >= 0 ? 1 : 0;
+    const auto write = [&](std::uint32_t exists, std::uint32_t rank) {
+      const std::uint32_t number = static_cast<std::uint32_t>(place.numbers[rank]) & (0U - exists);
+      const auto* const cell = reinterpret_cast<const float*>(cells + number);
+      Eigen::Map<Eigen::Array4f, Eigen::Aligned16>(reinterpret_cast<float*>(voxel)) =
+          Eigen::Map<const Eigen::Array4f, Eigen::Aligned16>(cell) + *shift_m++;
+      voxel->number = number;
+      voxel += exists;
+    };
+    for (const NeighbourRow& row : neighbour_rows) {
+      const internal::VoxelIndex::Row in_row = place.row[internal::VoxelIndex::rowOffset(row.dy, row.dz)];
+      if (!row.whole) {
+        write(in_row.has(place.x), in_row.rank(place.x));
+        continue;
+      }
+      std::uint32_t rank = in_row.rank(place.x - 1U);
+      for (std::uint32_t x = place.x - 1U; x <= place.x + 1U; ++x) {
+        const std::uint32_t exists = in_row.has(x);
+        write(exists, rank);
+        rank += exists;
+      }
     }
   }
   scratch.voxels.first[points.run_count] = static_cast<std::uint32_t>(voxel - scratch.voxels.voxels);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 
 #include "registration/batch_workspace.h"
 #include "registration/ndt_kernel.h"
@@ -28,27 +27,23 @@ struct LikelihoodSums {
 class BatchVoxelFinder {
  public:
   /// @param level  is referred to, not copied
-  BatchVoxelFinder(const NdtLevel& level, NeighborhoodSearchMethod method, const Eigen::Isometry3d& T_map_source);
+  BatchVoxelFinder(const internal::NdtLevel& level, NeighborhoodSearchMethod method,
+                   const Eigen::Isometry3d& T_map_source);
 
   /// Fills the scratch memory from `count` points of the source, at most kPointsPerBatch.
   /// Puts them in a better order first where runs are short.
   void find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const;
 
  private:
-  /// Where a neighbour lies in the index, and in space (m).
-  struct Shift {
-    std::ptrdiff_t offset;
-    float x_m, y_m, z_m;
-  };
-
   void findVoxels(BatchScratch& scratch) const;
+  template <typename NeighbourRows>
+  void findVoxelsIn(const NeighbourRows& neighbour_rows, BatchScratch& scratch) const;
   void cutIntoUnits(BatchScratch& scratch) const;
 
-  const NdtLevel& level_;
+  const internal::NdtLevel& level_;
+  NeighborhoodSearchMethod method_;
   std::size_t points_per_unit_ = pointsPerUnit();
   std::size_t units_per_vector_ = unitsPerVector();
-  std::array<Shift, kMostNeighbours> shifts_{};
-  std::size_t neighbour_count_ = 0;
   VoxelCoordinate origin_;
   BatchPose pose_;
 };

@@ -19,8 +19,9 @@ double ratio(double sum, std::size_t count) { return count == 0 ? 0.0 : sum / st
 
 }  // namespace
 
-Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
-                                double outlier_ratio, int threads, BatchWorkspace& workspace) {
+Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, OrderedSource& source,
+                                const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads,
+                                BatchWorkspace& workspace) {
   Likelihoods likelihoods;
   if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return likelihoods;
   const PairParameters parameters =
@@ -50,7 +51,7 @@ Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, co
   return likelihoods;
 }
 
-Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& source,
+Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, const SourcePoints& source,
                                 const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads) {
   if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return {};
   OrderedSource ordered;

@@ -11,10 +11,11 @@
 namespace saw_ndt {
 
 /// In single precision; the same bits for any number of threads.
-Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
-                                double outlier_ratio, int threads, BatchWorkspace& workspace);
+Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, OrderedSource& source,
+                                const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads,
+                                BatchWorkspace& workspace);
 /// The same for points in any order.
-Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& source,
+Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, const SourcePoints& source,
                                 const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads);
 
 }  // namespace saw_ndt

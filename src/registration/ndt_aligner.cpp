@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "common/executor.h"
+#include "map/ndt_level.h"
 #include "registration/ndt_evaluation.h"
 #include "registration/optimizers.h"
 
@@ -17,27 +18,27 @@ NdtAligner::~NdtAligner() = default;
 NdtAligner::NdtAligner(const NdtAligner&) : NdtAligner() {}
 NdtAligner& NdtAligner::operator=(const NdtAligner&) { return *this; }
 
-AlignmentResult NdtAligner::align(const WeightedVoxelMap& map, const SourcePoints& source,
+AlignmentResult NdtAligner::align(const NdtTarget& target, const SourcePoints& source,
                                   const Eigen::Isometry3d& guess, const AlignmentOptions& options) {
   options.check();
   if (!guess.matrix().allFinite()) throw std::invalid_argument("the initial guess is not finite");
   AlignmentResult result;
   result.T_map_source = guess;
-  result.status = map.empty() ? AlignmentStatus::NO_TARGET : AlignmentStatus::NO_SOURCE;
-  if (map.empty() || source.empty()) return result;
+  result.status = target.empty() ? AlignmentStatus::NO_TARGET : AlignmentStatus::NO_SOURCE;
+  if (target.empty() || source.empty()) return result;
 
   const internal::HelperSession session(options.threads);
   NdtEvaluation& evaluation = scratch_->evaluation;
-  evaluation.begin(map, source, options);
-  const double resolution_m = map.resolution();
+  evaluation.begin(target, source, options);
+  const double resolution_m = target.resolution();
   StepLimits limits{options.max_iterations, options.translation_epsilon_m, options.rotation_epsilon_rad,
                     options.max_step_m * resolution_m};
-  if (options.optimizer == Optimizer::DAMPED_NEWTON && options.use_coarse_level && !map.coarse().empty()) {
+  if (options.optimizer == Optimizer::DAMPED_NEWTON && options.use_coarse_level && !target.coarse().empty()) {
     StepLimits coarse_limits = limits;
     coarse_limits.max_iterations = options.coarse_max_iterations;
     coarse_limits.translation_epsilon_m = options.coarse_settled_voxels * resolution_m;
     coarse_limits.rotation_epsilon_rad = 1.0;
-    coarse_limits.max_step_m = options.max_step_m * map.coarse().resolution();
+    coarse_limits.max_step_m = options.max_step_m * target.coarse().resolution();
     dampedNewton(evaluation.onCoarseLevel(), coarse_limits, options.least_curvature_share, result);
     // A first step that is already small says that the guess is good; the coarse optimum is no better than it.
     if (result.evaluations == 1) result.T_map_source = guess;

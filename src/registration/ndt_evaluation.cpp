@@ -1,6 +1,7 @@
 #include "registration/ndt_evaluation.h"
 
 #include "common/executor.h"
+#include "map/ndt_level.h"
 #include "registration/likelihoods.h"
 #include "registration/score_function.h"
 #include "registration/vectorized_ndt_objective.h"
@@ -8,29 +9,29 @@
 namespace saw_ndt {
 
 template <typename Objective>
-Objective NdtEvaluation::objectiveOn(const NdtLevel& level) const {
-  const PairWeighting weighting{options_->use_weights && map_->labelled() && source_->labelled,
-                                options_->mismatch_penalty, map_->weighting().confidence};
+Objective NdtEvaluation::objectiveOn(const internal::NdtLevel& level) const {
+  const PairWeighting weighting{options_->use_weights && target_->labelled() && source_->labelled,
+                                options_->mismatch_penalty, target_->weighting().confidence};
   return {level, options_->neighborhood_search,
           scoreParameters(options_->score_function, options_->outlier_ratio, level.resolution()), weighting};
 }
 
-void NdtEvaluation::begin(const WeightedVoxelMap& map, const SourcePoints& source, const AlignmentOptions& options) {
-  map_ = &map;
+void NdtEvaluation::begin(const NdtTarget& target, const SourcePoints& source, const AlignmentOptions& options) {
+  target_ = &target;
   source_ = &source;
   options_ = &options;
   if (options.arithmetic == Arithmetic::SINGLE || options.evaluate_likelihoods) {
-    ordered_.order(source, map.resolution(), map.weighting().confidence, internal::threadCount(options.threads));
+    ordered_.order(source, target.resolution(), target.weighting().confidence, internal::threadCount(options.threads));
   }
 }
 
-Evaluation NdtEvaluation::onFineLevel() { return on(map_->fine(), 1); }
+Evaluation NdtEvaluation::onFineLevel() { return on(target_->fine(), 1); }
 
 Evaluation NdtEvaluation::onCoarseLevel() {
-  return on(map_->coarse(), static_cast<std::size_t>(options_->coarse_stride));
+  return on(target_->coarse(), static_cast<std::size_t>(options_->coarse_stride));
 }
 
-Evaluation NdtEvaluation::on(const NdtLevel& level, std::size_t stride) {
+Evaluation NdtEvaluation::on(const internal::NdtLevel& level, std::size_t stride) {
   const int threads = internal::threadCount(options_->threads);
   if (options_->arithmetic == Arithmetic::DOUBLE) {
     return [this, objective = objectiveOn<NdtObjective>(level), threads, stride](const Eigen::Isometry3d& T) {
@@ -48,7 +49,7 @@ Evaluation NdtEvaluation::on(const NdtLevel& level, std::size_t stride) {
 }
 
 Likelihoods NdtEvaluation::likelihoods(const Eigen::Isometry3d& T_map_source) {
-  return evaluateLikelihoods(map_->fine(), ordered_, T_map_source, AlignmentOptions().outlier_ratio,
+  return evaluateLikelihoods(target_->fine(), ordered_, T_map_source, AlignmentOptions().outlier_ratio,
                              internal::threadCount(options_->threads), batches_);
 }
 

@@ -104,10 +104,10 @@ struct UnitVoxels {
   Vector weight, confidence;
 };
 
-static_assert(offsetof(PackedNdtCell, mean_confidence) == 10 * sizeof(float));
+static_assert(offsetof(internal::PackedNdtCell, mean_confidence) == 10 * sizeof(float));
 
 HWY_INLINE UnitVoxels loadVoxels(Float d, const PointUnit* units, std::size_t n, const RunVoxel* voxels,
-                                 const PackedNdtCell* cells) {
+                                 const internal::PackedNdtCell* cells) {
   const auto voxel = [&](std::size_t k) HWY_ATTR { return voxels + units[k].first_voxel + n; };
   const auto cell = [&](std::size_t k) HWY_ATTR { return reinterpret_cast<const float*>(cells + voxel(k)->number); };
   const Quads mean = loadQuads(d, [&](std::size_t k) HWY_ATTR { return voxel(k)->mean; });

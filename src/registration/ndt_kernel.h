@@ -17,7 +17,7 @@ namespace saw_ndt {
 constexpr std::size_t kMostNeighbours = 27;
 
 /// A voxel that the points of a run pair with.
-struct RunVoxel {
+struct alignas(16) RunVoxel {
   float mean[3];  ///< m, from the centre of the run's own voxel
   std::uint32_t number;
 };
@@ -48,7 +48,7 @@ std::size_t unitsPerVector();
 
 /// What a pair scores: amplitude * exp(exponent_factor * m * ln 2) of the squared Mahalanobis distance m, and W_ij.
 struct PairParameters {
-  const PackedNdtCell* cells;
+  const internal::PackedNdtCell* cells;
   float amplitude;
   float exponent_factor;  ///< -d2 / 2 / ln 2
   bool weighted;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "common/executor.h"
 #include "registration/voxel_pairs.h"
@@ -47,6 +48,15 @@ double compatibility(double source_confidence, double voxel_mean_confidence, con
   return 1.0 - (1.0 - weighting.mismatch_penalty) * share;
 }
 
+NdtObjective::NdtObjective(const internal::NdtLevel& level, NeighborhoodSearchMethod method,
+                           const ScoreParameters& score, const PairWeighting& weighting)
+    : level_(level), method_(method), score_(score), weighting_(weighting) {
+  if (!level.hasDoubleCells()) {
+    throw std::invalid_argument(
+        "Arithmetic::DOUBLE needs a target that was made with CellPrecision::SINGLE_AND_DOUBLE");
+  }
+}
+
 template <NeighborhoodSearchMethod method, bool weighted>
 void NdtObjective::evaluateBlock(const SourcePoints& source, const Eigen::Isometry3d& T_map_source, std::size_t first,
                                  std::size_t last, std::size_t stride, NdtDerivatives& sums) const {
@@ -60,7 +70,7 @@ void NdtObjective::evaluateBlock(const SourcePoints& source, const Eigen::Isomet
     const Eigen::Vector3d r = R * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
     const double source_confidence = weighted ? confidence_of_label[source.label[i]] : 1.0;
     PointSums point;
-    voxel_pairs.forEach<method>(r, [&](const NdtCell& cell, double qx, double qy, double qz) {
+    voxel_pairs.forEach<method>(r, [&](const internal::NdtCell& cell, double qx, double qy, double qz) {
       ++point.pairs;
       const WhitenedOffset u(cell, qx, qy, qz);
       const double exponent = half_d2 * u.squared_mahalanobis;

@@ -26,9 +26,9 @@ double compatibility(double source_confidence, double voxel_mean_confidence, con
 class NdtObjective {
  public:
   /// @param level  is referred to, not copied
-  NdtObjective(const NdtLevel& level, NeighborhoodSearchMethod method, const ScoreParameters& score,
-               const PairWeighting& weighting)
-      : level_(level), method_(method), score_(score), weighting_(weighting) {}
+  /// @throws std::invalid_argument where the level has no cells in double precision
+  NdtObjective(const internal::NdtLevel& level, NeighborhoodSearchMethod method, const ScoreParameters& score,
+               const PairWeighting& weighting);
 
   /// What one call leaves for the next, so that none allocates.
   struct Workspace {
@@ -45,7 +45,7 @@ class NdtObjective {
   void evaluateBlock(const SourcePoints& source, const Eigen::Isometry3d& T_map_source, std::size_t first,
                      std::size_t last, std::size_t stride, NdtDerivatives& sums) const;
 
-  const NdtLevel& level_;
+  const internal::NdtLevel& level_;
   NeighborhoodSearchMethod method_;
   ScoreParameters score_;
   PairWeighting weighting_;

@@ -4,8 +4,8 @@
 
 namespace saw_ndt {
 
-PairParameters pairParameters(const NdtLevel& level, NeighborhoodSearchMethod method, const ScoreParameters& score,
-                              const PairWeighting& weighting) {
+PairParameters pairParameters(const internal::NdtLevel& level, NeighborhoodSearchMethod method,
+                              const ScoreParameters& score, const PairWeighting& weighting) {
   PairParameters parameters{};
   parameters.cells = level.packedCells().data();
   parameters.amplitude = static_cast<float>(score.amplitude);

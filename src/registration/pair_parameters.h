@@ -6,7 +6,7 @@
 namespace saw_ndt {
 
 /// What the inner loops need to know of a level, a score function and weights.
-PairParameters pairParameters(const NdtLevel& level, NeighborhoodSearchMethod method, const ScoreParameters& score,
-                              const PairWeighting& weighting);
+PairParameters pairParameters(const internal::NdtLevel& level, NeighborhoodSearchMethod method,
+                              const ScoreParameters& score, const PairWeighting& weighting);
 
 }  // namespace saw_ndt

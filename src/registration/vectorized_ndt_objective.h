@@ -13,7 +13,7 @@ namespace saw_ndt {
 class VectorizedNdtObjective {
  public:
   /// @param level  is referred to, not copied
-  VectorizedNdtObjective(const NdtLevel& level, NeighborhoodSearchMethod method, const ScoreParameters& score,
+  VectorizedNdtObjective(const internal::NdtLevel& level, NeighborhoodSearchMethod method, const ScoreParameters& score,
                          const PairWeighting& weighting)
       : level_(level), method_(method), score_(score), weighting_(weighting) {}
 
@@ -22,7 +22,7 @@ class VectorizedNdtObjective {
                           BatchWorkspace& workspace) const;
 
  private:
-  const NdtLevel& level_;
+  const internal::NdtLevel& level_;
   NeighborhoodSearchMethod method_;
   ScoreParameters score_;
   PairWeighting weighting_;

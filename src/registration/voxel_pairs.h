@@ -8,9 +8,9 @@
 
 namespace saw_ndt {
 
+/// How many voxels a neighbour is away along each axis.
 struct Neighbour {
-  std::ptrdiff_t offset;
-  double dx, dy, dz;  // in voxels
+  int dx, dy, dz;
 };
 
 template <NeighborhoodSearchMethod method>
@@ -28,8 +28,7 @@ constexpr std::array<Neighbour, kNeighbourCount<method>> neighbours() {
         const int distance = x * x + y * y + z * z;
         if (method == NeighborhoodSearchMethod::DIRECT1 && distance > 0) continue;
         if (method == NeighborhoodSearchMethod::DIRECT7 && distance > 1) continue;
-        result[count++] = {VoxelIndex::neighbourOffset(x, y, z), static_cast<double>(x), static_cast<double>(y),
-                           static_cast<double>(z)};
+        result[count++] = {x, y, z};
       }
     }
   }
@@ -40,7 +39,7 @@ constexpr std::array<Neighbour, kNeighbourCount<method>> neighbours() {
 /// far from the map's origin no digit is lost.
 class VoxelPairs {
  public:
-  VoxelPairs(const NdtLevel& level, const Eigen::Isometry3d& T_map_source)
+  VoxelPairs(const internal::NdtLevel& level, const Eigen::Isometry3d& T_map_source)
       : level_(level), resolution_(level.resolution()), inverse_resolution_(1.0 / level.resolution()) {
     const Eigen::Vector3d origin_voxel = (T_map_source.translation() * inverse_resolution_).array().floor();
     translation_ = T_map_source.translation() - origin_voxel * resolution_;
@@ -48,7 +47,7 @@ class VoxelPairs {
   }
 
   /// Whether voxels near the pose can be numbered at all.
-  static bool reachable(const NdtLevel& level, const Eigen::Isometry3d& T_map_source) {
+  static bool reachable(const internal::NdtLevel& level, const Eigen::Isometry3d& T_map_source) {
     return ((T_map_source.translation() / level.resolution()).array().abs() < kFarthestVoxel).all() &&
            T_map_source.linear().allFinite();
   }
@@ -60,14 +59,14 @@ class VoxelPairs {
     const Eigen::Vector3d p = r + translation_;
     const Eigen::Vector3d voxel = (p * inverse_resolution_).array().floor();
     if (!(voxel.array().abs() < kFarthestVoxel).all()) return;
-    const std::int32_t* numbers = level_.index().cell(voxel.cast<int>() + origin_, cursor_);
-    if (numbers == nullptr) return;
+    const internal::VoxelIndex::Place place = level_.index().place(voxel.cast<int>() + origin_, cursor_);
+    if (!place) return;
     const Eigen::Vector3d from_centre = p - (voxel.array() + 0.5).matrix() * resolution_;
-    const NdtCell* cells = level_.cells().data();
+    const internal::NdtCell* cells = level_.cells().data();
     for (const Neighbour& neighbour : kNeighbours) {
-      const std::int32_t number = numbers[neighbour.offset];
-      if (number == VoxelIndex::kNone) continue;
-      const NdtCell& cell = cells[number];
+      const std::int32_t number = place.number(neighbour.dx, neighbour.dy, neighbour.dz);
+      if (number == internal::VoxelIndex::kNone) continue;
+      const internal::NdtCell& cell = cells[static_cast<std::size_t>(number)];
       const double qx = from_centre.x() - neighbour.dx * resolution_ - cell.mean_from_centre[0];
       const double qy = from_centre.y() - neighbour.dy * resolution_ - cell.mean_from_centre[1];
       const double qz = from_centre.z() - neighbour.dz * resolution_ - cell.mean_from_centre[2];
@@ -82,16 +81,16 @@ class VoxelPairs {
   // Voxels this far from the origin voxel, and an origin voxel this far out, still add up within 32 bits.
   static constexpr double kFarthestVoxel = 1.0e9;
 
-  const NdtLevel& level_;
+  const internal::NdtLevel& level_;
   double resolution_, inverse_resolution_;
   Eigen::Vector3d translation_;
   VoxelCoordinate origin_;
-  VoxelIndex::Cursor cursor_;
+  internal::VoxelIndex::Cursor cursor_;
 };
 
 /// C^-1 q of a cell.
 struct WhitenedOffset {
-  WhitenedOffset(const NdtCell& cell, double qx, double qy, double qz) {
+  WhitenedOffset(const internal::NdtCell& cell, double qx, double qy, double qz) {
     const double* c = cell.inverse_covariance;
     x = c[0] * qx + c[1] * qy + c[2] * qz;
     y = c[1] * qx + c[3] * qy + c[4] * qz;

@@ -15,23 +15,23 @@
 namespace saw_ndt {
 namespace {
 
-/// One map read in each way that a method asks for; methods that ask for the same share it.
-class MapReadings {
+/// The targets of one map, one for each weighting that a method asks for; methods that ask for the same share it.
+class MapTargets {
  public:
-  explicit MapReadings(WeightedVoxelMap map) : map_(std::move(map)) {}
+  explicit MapTargets(WeightedVoxelMap map) : map_(std::move(map)) {}
 
-  std::shared_ptr<const WeightedVoxelMap> with(const VoxelWeighting& weighting) {
-    for (const auto& reading : readings_) {
-      if (reading->weighting() == weighting) return reading;
+  NdtTarget with(const VoxelWeighting& weighting) {
+    for (const NdtTarget& target : targets_) {
+      if (target.weighting() == weighting) return target;
     }
-    return readings_.emplace_back(std::make_shared<const WeightedVoxelMap>(map_.reweighted(weighting)));
+    return targets_.emplace_back(map_, weighting);
   }
 
   const WeightedVoxelMap& map() const { return map_; }
 
  private:
   WeightedVoxelMap map_;
-  std::vector<std::shared_ptr<const WeightedVoxelMap>> readings_;
+  std::vector<NdtTarget> targets_;
 };
 
 /// A localizer at its initial pose.
@@ -160,21 +160,21 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
   map_options.resolution_m = options_.resolution_m;
   map_options.segmentation = common.segmentation;
   map_options.threads = common.alignment.threads;
-  MapReadings maps(buildDriveMap(*source.scans(map_scans), map_options, progress.step_done).build());
-  result.voxels = voxelCloud(maps.map());
+  MapTargets targets(buildDriveMap(*source.scans(map_scans), map_options, progress.step_done).build());
+  result.voxels = voxelCloud(targets.map());
 
   std::vector<ScanLocalizer> localizers;
   for (const std::string& method : options_.methods) {
     const LocalizerOptions options = optionsOf(method, common);
-    const auto map = maps.with(options.method.voxels);
+    const NdtTarget target = targets.with(options.method.voxels);
     if (method == kPclNdtMethod) {
       begin(progress, prefix + "giving PCL the points of " + std::to_string(map_scans.size()) + " scans",
             map_scans.size());
       SourceAligner pcl =
-          pclNdtAligner(mapPoints(*source.scans(map_scans), progress.step_done), options_.resolution_m, map);
+          pclNdtAligner(mapPoints(*source.scans(map_scans), progress.step_done), options_.resolution_m, target);
       localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(std::move(pcl), options)));
     } else {
-      localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(map, options)));
+      localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(target, options)));
     }
   }
 

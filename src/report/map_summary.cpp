@@ -4,6 +4,10 @@
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <type_traits>
+
+#include "saw_ndt/map/ndt_target.h"
+#include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
 namespace {
@@ -11,14 +15,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 template <typename Value>
-VoxelFigure figureOf(const NdtLevel& level, Value value) {
+VoxelFigure figureOf(const std::vector<VoxelStatistics>& voxels, Value value) {
   VoxelFigure figure;
-  if (level.empty()) return figure;
-  figure.min = figure.max = value(level.cells().front());
-  for (const NdtCell& cell : level.cells()) {
-    figure.mean += value(cell) / static_cast<double>(level.size());
-    figure.min = std::min(figure.min, value(cell));
-    figure.max = std::max(figure.max, value(cell));
+  if (voxels.empty()) return figure;
+  figure.min = figure.max = value(voxels.front());
+  for (const VoxelStatistics& voxel : voxels) {
+    figure.mean += value(voxel) / static_cast<double>(voxels.size());
+    figure.min = std::min(figure.min, value(voxel));
+    figure.max = std::max(figure.max, value(voxel));
   }
   return figure;
 }
@@ -53,10 +57,26 @@ Json withShares(const std::array<const char*, 3>& names, const std::array<Count,
   return counted;
 }
 
+constexpr char kNotKnown[] = "not known";
+
+// {"sensor.name": ..., "sensor.columns": ..., ...}
+Json toJson(const SegmentationOptions& options) {
+  Json json;
+  internal::forEachField(options, [&json](const char* name, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, GroundRule>) {
+      json[name] = toString(value);
+    } else {
+      json[name] = value;
+    }
+  });
+  return json;
+}
+
 Json toJson(const MapSummary& summary) {
   Json json{{"resolution_m", summary.resolution_m},
             {"coarse_resolution_m", summary.coarse_resolution_m},
             {"labelled", summary.labelled},
+            {"software_version", summary.software_version.empty() ? kNotKnown : summary.software_version},
             {"scans", summary.scans},
             {"points", summary.points},
             {"entries", summary.entries},
@@ -66,6 +86,7 @@ Json toJson(const MapSummary& summary) {
             {"box_max_m", toJson(summary.box_max_m)}};
   if (summary.labelled) json["label_points"] = withShares({"noise", "ground", "non_ground"}, summary.label_points);
   json["class_voxels"] = withShares({"linear", "planar", "volumetric"}, summary.class_voxels);
+  if (summary.labelled) json["segmentation"] = summary.segmentation ? toJson(*summary.segmentation) : Json(kNotKnown);
   json["mean_confidence"] = toJson(summary.mean_confidence);
   json["weight"] = toJson(summary.weight);
   return json;
@@ -77,23 +98,25 @@ void writeLine(std::ostringstream& text, const std::string& name, const Json& va
 
 }  // namespace
 
-MapSummary summarize(const WeightedVoxelMap& map) {
+MapSummary summarize(const WeightedVoxelMap& map, const VoxelWeighting& weighting) {
   MapSummary summary;
   summary.resolution_m = map.resolution();
-  summary.coarse_resolution_m =
-      map.weighting().coarse_factor > 1 ? map.weighting().coarse_factor * map.resolution() : 0.0;
+  summary.coarse_resolution_m = weighting.coarse_factor > 1 ? weighting.coarse_factor * map.resolution() : 0.0;
   summary.labelled = map.labelled();
+  summary.software_version = map.origin().software_version;
+  summary.segmentation = map.origin().segmentation;
   summary.scans = map.origin().scan_count;
   summary.points = map.origin().point_count;
   summary.entries = map.entries().size();
-  summary.voxels = map.fine().size();
-  summary.coarse_voxels = map.coarse().size();
+  summary.coarse_voxels = NdtTarget(map, weighting).coarseVoxelCount();
   measureEntries(map, summary);
-  for (std::size_t i = 0; i < map.fine().size(); ++i) {
-    ++summary.class_voxels[static_cast<std::size_t>(map.fine().voxel(i).structure_class) - 1];
+  const std::vector<VoxelStatistics> voxels = map.statistics(weighting);
+  summary.voxels = voxels.size();
+  for (const VoxelStatistics& voxel : voxels) {
+    ++summary.class_voxels[static_cast<std::size_t>(voxel.structure_class) - 1];
   }
-  summary.mean_confidence = figureOf(map.fine(), [](const NdtCell& cell) { return cell.mean_confidence; });
-  summary.weight = figureOf(map.fine(), [](const NdtCell& cell) { return cell.weight; });
+  summary.mean_confidence = figureOf(voxels, [](const VoxelStatistics& voxel) { return voxel.mean_confidence; });
+  summary.weight = figureOf(voxels, [](const VoxelStatistics& voxel) { return voxel.weight; });
   return summary;
 }
 

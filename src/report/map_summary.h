@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "saw_ndt/map/weighted_voxel_map.h"
@@ -17,11 +18,13 @@ struct VoxelFigure {
   double max = 0.0;
 };
 
-/// What a map holds. Confidences and weights are those that it was read with.
+/// What a map holds.
 struct MapSummary {
   double resolution_m = 0.0;         ///< edge of a fine voxel
   double coarse_resolution_m = 0.0;  ///< edge of a coarse voxel, 0 without a coarse level
   bool labelled = false;
+  std::string software_version;                     ///< that added the points; empty where it is not known
+  std::optional<SegmentationOptions> segmentation;  ///< how labels were made; nothing without labels or not known
   std::uint64_t scans = 0;
   std::uint64_t points = 0;
   std::size_t entries = 0;                              ///< sums kept: one a voxel and label that occurs in it
@@ -35,9 +38,10 @@ struct MapSummary {
   VoxelFigure weight;                                   ///< over the fine voxels
 };
 
-MapSummary summarize(const WeightedVoxelMap& map);
+/// @param weighting  by which voxels get their confidences and weights, and which have a distribution at all
+MapSummary summarize(const WeightedVoxelMap& map, const VoxelWeighting& weighting = {});
 
-/// A line a figure: its name in toJsonText(), then its value.
+/// A line a figure: its name in toJsonText(), then its value. What a file does not tell is "not known" in both.
 std::string toText(const MapSummary& summary);
 /// One JSON object, indented, with a line end. Shares lie in [0, 1] and are 0 where there is nothing to share.
 std::string toJsonText(const MapSummary& summary);

@@ -5,7 +5,6 @@
 #include <pcl/registration/ndt.h>
 
 #include <stdexcept>
-#include <utility>
 
 #include "registration/likelihoods.h"
 #include "registration/ndt_derivatives.h"
@@ -102,18 +101,17 @@ double PclNdt::evaluate(const Eigen::Isometry3d& T_map_source) { return registra
 std::size_t PclNdt::pairCount(const Eigen::Isometry3d& T_map_source) { return registration_->pairCount(T_map_source); }
 
 SourceAligner pclNdtAligner(const PclNdt::Cloud::ConstPtr& target, double resolution_m,
-                            std::shared_ptr<const WeightedVoxelMap> judge) {
-  if (!judge) throw std::invalid_argument("pclNdtAligner: the judge is a null pointer");
+                            const NdtTarget& judge) {
   // A std::function must be copyable.
   auto ndt = std::make_shared<PclNdt>(target, resolution_m);
-  return [ndt, judge = std::move(judge)](const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted) {
+  return [ndt, judge](const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted) {
     AlignmentResult result;
     result.T_map_source = T_map_base_predicted;
     if (source.empty()) return result;
     ndt->setSource(cloudOf(source));
     result = ndt->align(T_map_base_predicted);
     result.likelihoods =
-        evaluateLikelihoods(judge->fine(), source, result.T_map_source, AlignmentOptions().outlier_ratio, 1);
+        evaluateLikelihoods(judge.fine(), source, result.T_map_source, AlignmentOptions().outlier_ratio, 1);
     return result;
   };
 }

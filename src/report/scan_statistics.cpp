@@ -44,10 +44,8 @@ double surfaceThickness(const ScanView& scan, const std::vector<StructuralLabel>
   addCloud(builder, cloud, Eigen::Isometry3d::Identity());
   VoxelWeighting weighting;
   weighting.min_eigenvalue_ratio = 1e-6;
-  const WeightedVoxelMap map = builder.build(weighting);
   std::vector<double> thicknesses_m;
-  for (std::size_t i = 0; i < map.fine().size(); ++i) {
-    const VoxelStatistics voxel = map.fine().voxel(i);
+  for (const VoxelStatistics& voxel : std::move(builder).build().statistics(weighting, 1)) {
     if (voxel.structure_class != StructureClass::Planar || voxel.point_count < kFewestPoints) continue;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(voxel.covariance, Eigen::EigenvaluesOnly);
     thicknesses_m.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[0])));

@@ -2,25 +2,24 @@
 
 namespace saw_ndt {
 
-pcl::PointCloud<VoxelPoint> voxelCloud(const WeightedVoxelMap& map) {
-  const NdtLevel& level = map.fine();
+pcl::PointCloud<VoxelPoint> voxelCloud(const WeightedVoxelMap& map, const VoxelWeighting& weighting) {
+  const std::vector<VoxelStatistics> voxels = map.statistics(weighting);
   pcl::PointCloud<VoxelPoint> cloud;
-  cloud.resize(level.size());
-  for (std::size_t i = 0; i < level.size(); ++i) {
-    const VoxelStatistics voxel = level.voxel(i);
-    cloud[i].getVector4fMap() = voxel.mean(level.resolution()).cast<float>().homogeneous();
+  cloud.resize(voxels.size());
+  auto entry = map.entries().begin();
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    const VoxelStatistics& voxel = voxels[i];
+    cloud[i].getVector4fMap() = voxel.mean(map.resolution()).cast<float>().homogeneous();
     cloud[i].structure_class = static_cast<float>(voxel.structure_class);
     cloud[i].weight = static_cast<float>(voxel.weight);
-  }
-  std::vector<std::uint64_t> most_points(level.size(), 0);
-  for (const LabelledVoxelSums& entry : map.entries()) {
-    const std::int32_t found = level.index().find(entry.voxel);
-    if (found == VoxelIndex::kNone || map.weighting().confidence.of(entry.label) <= 0.0) continue;
-    const auto i = static_cast<std::size_t>(found);
-    // The labels of a voxel come in ascending order.
-    if (entry.sums.count < most_points[i]) continue;
-    most_points[i] = entry.sums.count;
-    cloud[i].label = static_cast<std::uint32_t>(entry.label);
+    // Voxels and entries are in the same order, the labels of a voxel in ascending order.
+    while (entry->voxel != voxel.voxel) ++entry;
+    std::uint64_t most_points = 0;
+    for (; entry != map.entries().end() && entry->voxel == voxel.voxel; ++entry) {
+      if (weighting.confidence.of(entry->label) <= 0.0 || entry->sums.count < most_points) continue;
+      most_points = entry->sums.count;
+      cloud[i].label = static_cast<std::uint32_t>(entry->label);
+    }
   }
   return cloud;
 }

@@ -20,9 +20,9 @@ struct EIGEN_ALIGN16 VoxelPoint {
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
 
-/// The fine voxels that have a distribution, in the order of the map's level. Coordinates are single precision: far
+/// The voxels that have a distribution with a weighting, in map order. Coordinates are single precision: far
 /// from the map's origin they are rounded, to 0.25 m at 4,000 km.
-pcl::PointCloud<VoxelPoint> voxelCloud(const WeightedVoxelMap& map);
+pcl::PointCloud<VoxelPoint> voxelCloud(const WeightedVoxelMap& map, const VoxelWeighting& weighting = {});
 
 }  // namespace saw_ndt
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "saw_ndt/common/sensor_model.h"
-#include "saw_ndt/segmentation/scan_segmenter.h"
+#include "saw_ndt/segmentation/segmentation_options.h"
 #include "segmentation/range_image.h"
 
 namespace saw_ndt {

@@ -3,19 +3,10 @@
 #include <algorithm>
 
 #include "common/executor.h"
-#include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/segmentation_stages.h"
 
 namespace saw_ndt {
-
-void SegmentationOptions::check() const {
-  sensor.check();
-  checkOption(mounting_pitch_deg >= -90.0 && mounting_pitch_deg <= 90.0, "mounting_pitch_deg", mounting_pitch_deg,
-              "-90 to 90");
-  ground.check();
-  components.check();
-}
 
 ScanSegmenter::ScanSegmenter(const SegmentationOptions& options)
     : stages_((options.check(), std::make_unique<internal::SegmentationStages>())) {

@@ -1,5 +1,6 @@
 #include "drive_files.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
+#include "saw_ndt/version.h"
 
 namespace saw_ndt {
 namespace {
@@ -25,13 +26,18 @@ TEST_F(BuildMapApp, BuildsAMapThatLoads) {
   EXPECT_TRUE(map.labelled());
   EXPECT_EQ(map.resolution(), 0.8);
   EXPECT_EQ(map.origin().scan_count, 3U);
-  EXPECT_GT(map.fine().size(), 500U);
+  EXPECT_GT(map.voxelCount(), 500U);
+  ASSERT_TRUE(map.origin().segmentation);
+  EXPECT_EQ(map.origin().segmentation->sensor.name, "VLP-16");
+  EXPECT_EQ(map.origin().software_version, SAW_NDT_VERSION);
   EXPECT_EQ(folder.entryCount(), 2U);
 }
 
 TEST_F(BuildMapApp, ClassicalMapsHaveNoLabels) {
   ASSERT_EQ(build("-classical").exit_code, 0);
-  EXPECT_FALSE(WeightedVoxelMap::load(map_file).labelled());
+  const WeightedVoxelMap map = WeightedVoxelMap::load(map_file);
+  EXPECT_FALSE(map.labelled());
+  EXPECT_FALSE(map.origin().segmentation);
 }
 
 TEST_F(BuildMapApp, ThreadsAndOrderDoNotChangeABit) {

@@ -11,6 +11,7 @@
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/point_cloud_file.h"
+#include "saw_ndt/map/ndt_target.h"
 
 namespace saw_ndt {
 namespace {
@@ -49,12 +50,12 @@ TEST_F(MapInfoApp, TellsWhatAMapHolds) {
   EXPECT_EQ(json.at("points"), 5000);
   EXPECT_EQ(json.at("scans"), 1);
   EXPECT_EQ(json.at("labelled"), true);
-  EXPECT_EQ(json.at("voxels"), map.fine().size());
-  EXPECT_EQ(json.at("coarse_voxels"), map.coarse().size());
+  EXPECT_EQ(json.at("voxels"), map.voxelCount());
+  EXPECT_EQ(json.at("coarse_voxels"), NdtTarget(map).coarseVoxelCount());
   EXPECT_EQ(json.at("entries"), map.entries().size());
   EXPECT_EQ(json_run.output.find(folder.path().string()), std::string::npos);
   expectVoxels(path("a.pcd"), map);
-  EXPECT_EQ(readPointCloud<pcl::PointXYZL>(path("a.pcd")).size(), map.fine().size());
+  EXPECT_EQ(readPointCloud<pcl::PointXYZL>(path("a.pcd")).size(), map.voxelCount());
 
   const AppResult text_run = run("'" + path("a.map") + "'");
   ASSERT_EQ(text_run.exit_code, 0) << text_run.errors;

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "expect_throws.h"
-#include "map_fixtures.h"
+#include "map/map_fixtures.h"
 #include "real_data.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/kitti_sequence.h"
@@ -55,7 +55,7 @@ TEST_F(SequenceMap, CountsScansAndReportsThem) {
   EXPECT_EQ(map.origin().scan_count, 3U);
   EXPECT_TRUE(map.labelled());
   EXPECT_EQ(map.resolution(), 2.0);
-  EXPECT_GT(map.fine().size(), 500U);
+  EXPECT_GT(map.voxelCount(), 500U);
 }
 
 TEST(SequenceMapErrors, TheFirstBadScanIsNamed) {

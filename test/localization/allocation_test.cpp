@@ -27,7 +27,7 @@ TEST(Localizer, AllocatesNothingOfAScansSizeInTheSteadyState) {
     options.method = LocalizationMethod::named(method);
     options.segmentation.sensor = sensor;
     options.alignment.threads = 1;
-    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map.reweighted(options.method.voxels)), options);
+    Localizer localizer(map, options);
     std::size_t before = 0;
     for (const bool settled : {false, true}) {
       localizer.setInitialPose(drive.T_map_lidar[0]);

@@ -13,20 +13,20 @@ namespace saw_ndt {
 namespace {
 
 /// Every point against every voxel: a voxel counts that is the point's own or shares a face with it.
-Likelihoods byBruteForce(const NdtLevel& level, const SourcePoints& source, const Eigen::Isometry3d& T_map_source,
+Likelihoods byBruteForce(const WeightedVoxelMap& map, const SourcePoints& source, const Eigen::Isometry3d& T_map_source,
                          double outlier_ratio) {
-  const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, outlier_ratio, level.resolution());
+  const std::vector<VoxelStatistics> voxels = map.statistics();
+  const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, outlier_ratio, map.resolution());
   double all = 0.0, non_ground = 0.0, best_sum = 0.0;
   int non_ground_points = 0, matched_points = 0;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const Eigen::Vector3d p = T_map_source * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
-    const VoxelCoordinate own = (p / level.resolution()).array().floor().matrix().cast<int>();
+    const VoxelCoordinate own = (p / map.resolution()).array().floor().matrix().cast<int>();
     double best = 0.0, total = 0.0;
     bool matched = false;
-    for (std::size_t v = 0; v < level.size(); ++v) {
-      const VoxelStatistics voxel = level.voxel(v);
+    for (const VoxelStatistics& voxel : voxels) {
       if ((voxel.voxel - own).cwiseAbs().sum() > 1) continue;
-      const Eigen::Vector3d q = p - voxel.mean(level.resolution());
+      const Eigen::Vector3d q = p - voxel.mean(map.resolution());
       const double pair = score.amplitude * std::exp(-0.5 * score.d2 * q.dot(voxel.inverse_covariance * q));
       total += pair;
       best = std::max(best, pair);
@@ -45,15 +45,16 @@ Likelihoods byBruteForce(const NdtLevel& level, const SourcePoints& source, cons
 
 TEST(Likelihoods, EqualBruteForce) {
   const WeightedVoxelMap map = mapOf(streetCorner(1, 1500));
+  const NdtTarget target(map);
   std::mt19937 random(2);
   for (const double outlier_ratio : {0.3, 0.55}) {
     for (const double offset_m : {0.0, 0.2, 4.0}) {
       for (const bool labelled : {true, false}) {
         const SourcePoints source = sourceOf(streetCorner(3, 60), labelled);
         const Eigen::Isometry3d T = randomPose(random, offset_m, 0.1 * offset_m);
-        const Likelihoods expected = byBruteForce(map.fine(), source, T, outlier_ratio);
+        const Likelihoods expected = byBruteForce(map, source, T, outlier_ratio);
         for (const int threads : {1, 3}) {
-          const Likelihoods got = evaluateLikelihoods(map.fine(), source, T, outlier_ratio, threads);
+          const Likelihoods got = evaluateLikelihoods(target.fine(), source, T, outlier_ratio, threads);
           // Single precision: positions round by up to 5e-7 m, 5e-5 of the standard deviations of 1 cm.
           EXPECT_NEAR(got.unweighted, expected.unweighted, 1e-5);
           EXPECT_NEAR(got.non_ground, expected.non_ground, 1e-5);
@@ -75,15 +76,15 @@ TEST(Likelihoods, WeightsDoNotChangeThem) {
   other.confidence.ground = 0.1;
   const SourcePoints source = sourceOf(streetCorner(2));
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  const Likelihoods a = evaluateLikelihoods(map.fine(), source, T, 0.55, 1);
-  const Likelihoods b = evaluateLikelihoods(map.reweighted(other).fine(), source, T, 0.55, 1);
+  const Likelihoods a = evaluateLikelihoods(NdtTarget(map).fine(), source, T, 0.55, 1);
+  const Likelihoods b = evaluateLikelihoods(NdtTarget(map, other).fine(), source, T, 0.55, 1);
   EXPECT_EQ(a.unweighted, b.unweighted);
   EXPECT_EQ(a.non_ground, b.non_ground);
   EXPECT_EQ(a.nearest_voxel, b.nearest_voxel);
 }
 
 TEST(Likelihoods, AreZeroWhereThereIsNothingToMatch) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map(mapOf(streetCorner(1)));
   const auto expectZero = [](const Likelihoods& likelihoods) {
     EXPECT_EQ(likelihoods.unweighted, 0.0);
     EXPECT_EQ(likelihoods.non_ground, 0.0);
@@ -95,7 +96,8 @@ TEST(Likelihoods, AreZeroWhereThereIsNothingToMatch) {
   far.translation().x() = 1e30;
   expectZero(evaluateLikelihoods(map.fine(), sourceOf(streetCorner(2)), far, 0.55, 2));
   expectZero(evaluateLikelihoods(map.fine(), SourcePoints(), Eigen::Isometry3d::Identity(), 0.55, 2));
-  expectZero(evaluateLikelihoods(NdtLevel(), sourceOf(streetCorner(2)), Eigen::Isometry3d::Identity(), 0.55, 2));
+  expectZero(
+      evaluateLikelihoods(internal::NdtLevel(), sourceOf(streetCorner(2)), Eigen::Isometry3d::Identity(), 0.55, 2));
 }
 
 }  // namespace

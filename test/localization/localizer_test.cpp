@@ -47,7 +47,7 @@ class LocalizerTest : public ::testing::Test {
   LocalizerTest() {
     options.method = LocalizationMethod::named("classical");
     options.alignment.threads = 1;
-    map = std::make_shared<const WeightedVoxelMap>(mapOf(withoutLabels(streetCorner(1)), 1.0, options.method.voxels));
+    map = NdtTarget(mapOf(withoutLabels(streetCorner(1))), options.method.voxels);
   }
 
   static Eigen::Isometry3d poseOf(int scan) { return planarPose(0.2 * scan - 0.6, 0.1 * scan, 1.0 * scan); }
@@ -85,7 +85,7 @@ class LocalizerTest : public ::testing::Test {
   }
 
   LocalizerOptions options;
-  std::shared_ptr<const WeightedVoxelMap> map;
+  NdtTarget map;
 };
 
 TEST_F(LocalizerTest, FollowsADrive) {
@@ -217,20 +217,18 @@ TEST_F(LocalizerTest, AMountedLidarGivesPosesOfTheBase) {
 }
 
 TEST_F(LocalizerTest, RefusesMapsThatDoNotFitTheMethod) {
-  const auto refused = [&](std::shared_ptr<const WeightedVoxelMap> with, const std::string& method,
-                           std::initializer_list<std::string> parts) {
+  const auto refused = [&](const NdtTarget& with, const std::string& method, std::initializer_list<std::string> parts) {
     LocalizerOptions other = options;
     other.method = LocalizationMethod::named(method);
     expectThrows<std::invalid_argument>([&] { Localizer(with, other); }, parts);
   };
-  const auto labelled = std::make_shared<const WeightedVoxelMap>(mapOf(streetCorner(1)));
-  const auto unlabelled = std::make_shared<const WeightedVoxelMap>(mapOf(withoutLabels(streetCorner(1))));
-  const auto read = std::make_shared<const WeightedVoxelMap>(labelled->reweighted(LocalizerOptions().method.voxels));
-  EXPECT_NO_THROW(Localizer(read, LocalizerOptions()));
+  const WeightedVoxelMap map_with_labels = mapOf(streetCorner(1));
+  const NdtTarget labelled(map_with_labels), unlabelled(mapOf(withoutLabels(streetCorner(1))));
+  EXPECT_NO_THROW(Localizer(NdtTarget(map_with_labels, LocalizerOptions().method.voxels), LocalizerOptions()));
+  EXPECT_NO_THROW(Localizer(map_with_labels, LocalizerOptions()));
   refused(labelled, "weighted-s50", {"VoxelWeighting", "weighted-s50"});
   refused(labelled, "classical", {"VoxelWeighting", "classical"});
   refused(unlabelled, "weighted", {"labels", "weighted"});
-  refused(nullptr, "classical", {"null"});
 }
 
 TEST_F(LocalizerTest, WrongOptionsNameTheirField) {

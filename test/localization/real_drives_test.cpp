@@ -26,7 +26,7 @@ class RealDrive {
     LocalizerOptions options;
     options.method = LocalizationMethod::named(method);
     options.alignment.threads = threads;
-    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map_.reweighted(options.method.voxels)), options);
+    Localizer localizer(map_, options);
     const std::vector<int> numbers = selected(scans);
     localizer.setInitialPose(reference_[static_cast<std::size_t>(numbers.front())]);
     DriveLocalization run = localizeDrive(localizer, *sequence_.scans(numbers));

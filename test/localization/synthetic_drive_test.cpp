@@ -30,7 +30,7 @@ class SyntheticDriveTest : public ::testing::Test {
     options.segmentation.sensor = sensor;
     options.alignment.threads = threads;
     options.T_base_lidar = T_base_lidar;
-    Localizer localizer(std::make_shared<const WeightedVoxelMap>(map.reweighted(options.method.voxels)), options);
+    Localizer localizer(map, options);
     localizer.setInitialPose(drive.T_map_lidar[1] * T_base_lidar.inverse());
     std::vector<LocalizationResult> results;
     for (std::size_t i = 1; i < drive.scans.size(); i += 2) {

@@ -4,16 +4,20 @@
 
 #include <cstring>
 #include <limits>
+#include <vector>
 
-#include "expect_throws.h"
 #include "map/map_tile.h"
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/version.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {
+
+using internal::inMapOrder;
+using internal::tileOf;
 
 constexpr std::size_t kHeaderBytes = 96;
 constexpr std::size_t kTileBytes = 40;
@@ -44,11 +48,49 @@ void put(std::string& bytes, std::size_t offset, Value value) {
   bytes.replace(offset, sizeof(Value), littleEndian(value));
 }
 
-/// Makes the checksums of a file of one tile agree with what its bytes have become.
-void checksum(std::string& bytes) {
-  put(bytes, kHeaderBytes + 12, crc32(bytes.substr(kHeaderBytes + kTileBytes)));
-  put(bytes, 64, crc32(bytes.substr(kHeaderBytes, kTileBytes)));
+template <typename Value>
+Value valueAt(const std::string& bytes, std::size_t offset) {
+  Value value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+/// Where the directory of a file lies.
+std::size_t directoryOf(const std::string& bytes) {
+  return kHeaderBytes + (valueAt<std::uint32_t>(bytes, 8) == 1 ? 0 : valueAt<std::uint32_t>(bytes, 68));
+}
+
+/// Makes the checksums of the directory, the metadata and the header agree with what the bytes have become.
+void checksumFront(std::string& bytes) {
+  const std::size_t directory = directoryOf(bytes);
+  put(bytes, 64, crc32(bytes.substr(directory, kTileBytes)));
+  if (valueAt<std::uint32_t>(bytes, 8) != 1) {
+    put(bytes, 72, crc32(bytes.substr(kHeaderBytes, directory - kHeaderBytes)));
+  }
   put(bytes, 92, crc32(bytes.substr(0, 92)));
+}
+
+/// The same for all of a file of one tile.
+void checksum(std::string& bytes) {
+  const std::size_t directory = directoryOf(bytes);
+  put(bytes, directory + 12, crc32(bytes.substr(directory + kTileBytes)));
+  checksumFront(bytes);
+}
+
+/// What version 1 of the format would have made of a file.
+std::string asVersion1(std::string bytes) {
+  const std::size_t metadata = directoryOf(bytes) - kHeaderBytes;
+  bytes.erase(kHeaderBytes, metadata);
+  put(bytes, 8, std::uint32_t{1});
+  put(bytes, 68, std::uint64_t{0});
+  const auto tiles = valueAt<std::uint64_t>(bytes, 56);
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    const std::size_t offset = kHeaderBytes + tile * kTileBytes + 24;
+    put(bytes, offset, valueAt<std::uint64_t>(bytes, offset) - metadata);
+  }
+  put(bytes, 64, crc32(bytes.substr(kHeaderBytes, tiles * kTileBytes)));
+  put(bytes, 92, crc32(bytes.substr(0, 92)));
+  return bytes;
 }
 
 class MapFile : public ::testing::Test {
@@ -64,6 +106,13 @@ class MapFile : public ::testing::Test {
     const std::string file = folder.write("damaged.map", content).string();
     expectThrows<Error>([&] { WeightedVoxelMap::load(file); }, {file});
     expectThrows<Error>([&] { WeightedVoxelMap::load(file); }, parts);
+    expectThrows<Error>([&] { NdtTarget::load(file); }, parts);
+  }
+
+  /// A map as both versions hold it.
+  std::vector<std::string> bothVersionsOf(const WeightedVoxelMap& map) const {
+    const std::string bytes = bytesOf(map);
+    return {bytes, asVersion1(bytes)};
   }
 
   /// Two points of one voxel, ground and non-ground.
@@ -90,21 +139,23 @@ TEST_F(MapFile, TinyMapByteForByte) {
   for (const std::int64_t product : {268435456, 0, 0, 0, 0, 0}) entries += littleEndian(product);
   ASSERT_EQ(entries.size(), 2 * kEntryBytes);
 
+  const std::string metadata = "software_version = " SAW_NDT_VERSION "\nsegmentation = none\n";
   const std::string directory = littleEndian(std::int32_t{-1}) + littleEndian(std::int32_t{1}) +
                                 littleEndian(std::int32_t{0}) + littleEndian(crc32(entries)) +
-                                littleEndian(std::uint64_t{2}) + littleEndian(std::uint64_t{136}) +
+                                littleEndian(std::uint64_t{2}) + littleEndian(std::uint64_t{136 + metadata.size()}) +
                                 littleEndian(std::uint64_t{0});
   ASSERT_EQ(directory.size(), kTileBytes);
 
-  std::string header = "SAWNDTM\n" + littleEndian(std::uint32_t{1}) + littleEndian(std::uint32_t{96}) +
+  std::string header = "SAWNDTM\n" + littleEndian(std::uint32_t{2}) + littleEndian(std::uint32_t{96}) +
                        std::string("\0\0\0\0\0\0\xF0\x3F", 8) +  // 1.0 as IEEE 754
                        littleEndian(std::uint32_t{64}) + littleEndian(std::uint32_t{1});
   for (const std::uint64_t count : {1, 2, 2, 1}) header += littleEndian(count);  // scans, points, entries, tiles
-  header += littleEndian(crc32(directory)) + std::string(24, '\0');
+  header += littleEndian(crc32(directory)) + littleEndian(static_cast<std::uint32_t>(metadata.size())) +
+            littleEndian(crc32(metadata)) + std::string(16, '\0');
   header += littleEndian(crc32(header));
   ASSERT_EQ(header.size(), kHeaderBytes);
 
-  EXPECT_TRUE(bytesOf(tinyMap()) == header + directory + entries);
+  EXPECT_TRUE(bytesOf(tinyMap()) == header + metadata + directory + entries);
   ASSERT_EQ(crc32("123456789"), 0xCBF43926U);  // the check value of this CRC
 }
 
@@ -119,17 +170,12 @@ TEST_F(MapFile, RoundTripKeepsEverything) {
     }
     const WeightedVoxelMap map = builder.build();
     map.save(path());
-    EXPECT_EQ(std::filesystem::file_size(path()) % 4, 0U);
-    VoxelWeighting weighting;
-    weighting.planar_alpha = 2.0;
-    const WeightedVoxelMap loaded = WeightedVoxelMap::load(path(), weighting);
+    const WeightedVoxelMap loaded = WeightedVoxelMap::load(path());
     EXPECT_EQ(loaded.resolution(), 0.7);
     EXPECT_EQ(loaded.labelled(), labelled);
     EXPECT_EQ(loaded.origin().scan_count, 3U);
     EXPECT_EQ(loaded.origin().point_count, 12000U);
-    EXPECT_EQ(loaded.weighting().planar_alpha, 2.0);
-    EXPECT_EQ(loaded.fine().size(), map.fine().size());
-    EXPECT_EQ(loaded.coarse().size(), map.coarse().size());
+    EXPECT_EQ(loaded.origin().software_version, SAW_NDT_VERSION);
     ASSERT_EQ(loaded.entries().size(), map.entries().size());
     for (std::size_t i = 0; i < map.entries().size(); ++i) {
       ASSERT_EQ(loaded.entries()[i].voxel, map.entries()[i].voxel);
@@ -140,31 +186,85 @@ TEST_F(MapFile, RoundTripKeepsEverything) {
   }
 }
 
+TEST_F(MapFile, TellsHowTheMapWasMade) {
+  SegmentationOptions segmentation;
+  segmentation.sensor = SensorModel::named("OS-128");
+  segmentation.mounting_pitch_deg = 0.1;
+  segmentation.ground.rule = GroundRule::Inclination;
+  WeightedMapBuilder builder(1.0, segmentation);
+  addCloud(builder, mixedCloud(1, 1000), Eigen::Isometry3d::Identity());
+  const std::string bytes = bytesOf(builder.build());
+  const MapOrigin origin = WeightedVoxelMap::load(path("saved.map")).origin();
+  EXPECT_EQ(origin.software_version, SAW_NDT_VERSION);
+  ASSERT_TRUE(origin.segmentation);
+  EXPECT_FALSE(firstDifference(*origin.segmentation, segmentation));
+  EXPECT_FALSE(firstDifference(*NdtTarget::load(path("saved.map")).origin().segmentation, segmentation));
+  EXPECT_TRUE(bytesOf(WeightedVoxelMap::load(path("saved.map"))) == bytes);
+}
+
+TEST_F(MapFile, OfVersion1IsReadAndDoesNotTellHowItWasMade) {
+  SegmentationOptions segmentation;
+  WeightedMapBuilder builder(1.0, segmentation);
+  addCloud(builder, mixedCloud(1, 5000, 90.0F), Eigen::Isometry3d::Identity());
+  const WeightedVoxelMap map = builder.build();
+  const std::string file = folder.write("old.map", asVersion1(bytesOf(map))).string();
+  const WeightedVoxelMap loaded = WeightedVoxelMap::load(file);
+  EXPECT_FALSE(loaded.origin().segmentation);
+  EXPECT_EQ(loaded.origin().software_version, "");
+  EXPECT_TRUE(loaded.labelled());
+  EXPECT_EQ(loaded.entries().size(), map.entries().size());
+  expectEqualTargets(NdtTarget::load(file), NdtTarget(map));
+}
+
+TEST_F(MapFile, RefusesDamagedMetadata) {
+  const std::string whole = bytesOf(tinyMap());
+  const auto expectRefusedWith = [&](const std::string& from, const std::string& to, std::size_t offset,
+                                     const std::string& reason) {
+    std::string damaged = whole;
+    damaged.replace(damaged.find(from), from.size(), to);
+    checksumFront(damaged);
+    expectRefused(damaged, {"offset " + std::to_string(offset), reason});
+  };
+  const std::size_t second_line = whole.find("segmentation = ");
+  expectRefusedWith("segmentation = none", "segmentation = nine", second_line + 15, "no valid segmentation");
+  expectRefusedWith("segmentation = none", "segmentotion = none", 96, "does not give segmentation");
+  expectRefusedWith("segmentation = none", "segmentation : none", second_line, "key = value");
+  expectRefusedWith("segmentation = none", "segmentation =known", second_line, "key = value");
+  for (const std::uint32_t size : {0U, 1U, 0xFFFFFFFFU}) {
+    std::string damaged = whole;
+    put(damaged, 68, size);
+    put(damaged, 92, crc32(damaged.substr(0, 92)));
+    expectRefused(damaged, {"offset ", "do not make this size"});
+  }
+}
+
 TEST_F(MapFile, AnEmptyMapIsAMap) {
   WeightedMapBuilder(2.0).build().save(path());
-  EXPECT_EQ(std::filesystem::file_size(path()), kHeaderBytes);
   const WeightedVoxelMap map = WeightedVoxelMap::load(path());
-  EXPECT_TRUE(map.empty());
+  EXPECT_TRUE(map.entries().empty());
   EXPECT_EQ(map.resolution(), 2.0);
+  EXPECT_TRUE(NdtTarget::load(path()).empty());
 }
 
 TEST_F(MapFile, RefusesEveryTruncation) {
-  const std::string whole = bytesOf(mapOf(mixedCloud(1, 60)));
-  for (std::size_t size = 0; size < whole.size(); size += size < 200 ? 1 : 37) {
-    expectRefused(whole.substr(0, size), {"offset "});
+  for (const std::string& whole : bothVersionsOf(mapOf(mixedCloud(1, 60)))) {
+    for (std::size_t size = 0; size < whole.size(); size += size < 300 ? 1 : 37) {
+      expectRefused(whole.substr(0, size), {"offset "});
+    }
+    expectRefused(whole + "x", {"offset ", "truncated or damaged"});
+    expectRefused(whole + whole, {"offset "});
   }
-  expectRefused(whole + "x", {"offset ", "truncated or damaged"});
-  expectRefused(whole + whole, {"offset "});
 }
 
 TEST_F(MapFile, RefusesEveryDamagedByte) {
-  const std::string whole = bytesOf(tinyMap());
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    for (const char flip : {'\x01', '\x80', '\xFF'}) {
-      std::string damaged = whole;
-      damaged[i] = static_cast<char>(damaged[i] ^ flip);
-      SCOPED_TRACE("byte " + std::to_string(i));
-      expectRefused(damaged, {"offset "});
+  for (const std::string& whole : bothVersionsOf(tinyMap())) {
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      for (const char flip : {'\x01', '\x80', '\xFF'}) {
+        std::string damaged = whole;
+        damaged[i] = static_cast<char>(damaged[i] ^ flip);
+        SCOPED_TRACE("byte " + std::to_string(i));
+        expectRefused(damaged, {"offset "});
+      }
     }
   }
 }
@@ -175,18 +275,17 @@ TEST_F(MapFile, RefusesForeignFiles) {
   expectRefused(std::string(1000, '\0'), {"offset 0", "not a saw_ndt map"});
   expectRefused("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\n", {"offset 0", "not a saw_ndt map"});
   std::string newer = bytesOf(tinyMap());
-  put(newer, 8, std::uint32_t{2});
+  put(newer, 8, std::uint32_t{3});
   checksum(newer);
-  expectRefused(newer, {"offset 8", "map version 2, this program reads version 1"});
+  expectRefused(newer, {"offset 8", "map version 3, this program reads versions 1 and 2"});
   expectThrows<Error>([&] { WeightedVoxelMap::load(path("none.map")); }, {path("none.map"), "No such file"});
   expectThrows<Error>([&] { WeightedVoxelMap::load(folder.path().string()); }, {folder.path().string(), "folder"});
 }
 
 TEST_F(MapFile, RefusesAbsurdSizesBeforeAllocating) {
-  const std::string whole = bytesOf(tinyMap());
   constexpr auto kHuge = std::numeric_limits<std::uint64_t>::max();
   const struct {
-    std::size_t offset;  // of a u64
+    std::size_t offset;  // of a u64, in a file without metadata
     std::uint64_t value;
     std::string reason;
   } cases[] = {
@@ -210,28 +309,27 @@ TEST_F(MapFile, RefusesAbsurdSizesBeforeAllocating) {
       {172, kHuge >> 1, "out of range"},
       {140, kHuge, "out of range"},
   };
-  for (const auto& c : cases) {
-    std::string damaged = whole;
-    put(damaged, c.offset, c.value);
-    if (c.reason == "disagree")
-      put(damaged, kHeaderBytes + 12, crc32(damaged.substr(136, kEntryBytes)));
-    else
+  for (const std::string& whole : bothVersionsOf(tinyMap())) {
+    const std::size_t metadata = directoryOf(whole) - kHeaderBytes;
+    for (const auto& c : cases) {
+      std::string damaged = whole;
+      put(damaged, c.offset < kHeaderBytes ? c.offset : c.offset + metadata, c.value);
       checksum(damaged);
-    put(damaged, 64, crc32(damaged.substr(kHeaderBytes, kTileBytes)));
-    put(damaged, 92, crc32(damaged.substr(0, 92)));
-    SCOPED_TRACE(std::to_string(c.offset) + " = " + std::to_string(c.value));
-    expectRefused(damaged, {"offset ", c.reason});
+      SCOPED_TRACE(std::to_string(c.offset) + " = " + std::to_string(c.value));
+      expectRefused(damaged, {"offset ", c.reason});
+    }
   }
 }
 
 TEST_F(MapFile, RefusesAnotherLayout) {
-  const std::string whole = bytesOf(tinyMap());
+  const std::vector<std::string> versions = bothVersionsOf(tinyMap());
   const auto expectRefusedWith = [&](std::size_t offset, auto value, const std::string& reason) {
-    std::string damaged = whole;
-    put(damaged, offset, value);
-    checksum(damaged);
-    SCOPED_TRACE(offset);
-    expectRefused(damaged, {"offset ", reason});
+    for (std::string damaged : versions) {
+      put(damaged, offset < kHeaderBytes ? offset : offset + directoryOf(damaged) - kHeaderBytes, value);
+      checksum(damaged);
+      SCOPED_TRACE(offset);
+      expectRefused(damaged, {"offset ", reason});
+    }
   };
   expectRefusedWith(12, std::uint32_t{128}, "unknown layout");  // header bytes
   expectRefusedWith(24, std::uint32_t{32}, "unknown layout");   // tile size
@@ -245,6 +343,26 @@ TEST_F(MapFile, RefusesAnotherLayout) {
   expectRefusedWith(136, std::uint8_t{64}, "out of range");  // place in the tile
   expectRefusedWith(139, std::uint8_t{3}, "out of range");   // label
   expectRefusedWith(139, std::uint8_t{2}, "out of order");   // the same as the next one
+}
+
+TEST_F(MapFile, RefusesTilesOutOfOrder) {
+  std::vector<LabelledVoxelSums> entries;
+  for (const int x : {0, 64}) {
+    LabelledVoxelSums& entry = entries.emplace_back();
+    entry.voxel = {x, 0, 0};
+    entry.sums.add({1, 2, 3});
+  }
+  MapOrigin origin;
+  origin.point_count = 2;
+  for (std::string bytes : bothVersionsOf(WeightedVoxelMap(origin, entries))) {
+    const std::size_t directory = directoryOf(bytes);
+    for (const std::int32_t x : {1, 2}) {  // of the first tile; that of the second one is 1
+      put(bytes, directory, x);
+      put(bytes, 64, crc32(bytes.substr(directory, 2 * kTileBytes)));
+      put(bytes, 92, crc32(bytes.substr(0, 92)));
+      expectRefused(bytes, {"offset " + std::to_string(directory + kTileBytes), "out of order"});
+    }
+  }
 }
 
 TEST_F(MapFile, LeavesNothingBehindWhereItCannotWrite) {

@@ -1,15 +1,20 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <sstream>
 #include <string>
 
+#include "map/ndt_level.h"
+#include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/map/weighted_map_builder.h"
 #include "saw_ndt/pcl/cloud_view.h"
 
@@ -54,11 +59,28 @@ inline pcl::PointCloud<pcl::PointXYZ> withoutLabels(const pcl::PointCloud<pcl::P
 }
 
 template <typename PointT>
-WeightedVoxelMap mapOf(const pcl::PointCloud<PointT>& cloud, double resolution_m = 1.0,
-                       const VoxelWeighting& weighting = {}) {
+WeightedVoxelMap mapOf(const pcl::PointCloud<PointT>& cloud, double resolution_m = 1.0) {
   WeightedMapBuilder builder(resolution_m);
   addCloud(builder, cloud, Eigen::Isometry3d::Identity());
-  return builder.build(weighting);
+  return builder.build();
+}
+
+/// Expects the same cells, bit for bit, of the same voxels.
+inline void expectEqualLevels(const internal::NdtLevel& a, const internal::NdtLevel& b) {
+  EXPECT_EQ(a.resolution(), b.resolution());
+  ASSERT_EQ(a.index().voxels(), b.index().voxels());
+  const auto sameFields = [](const auto& x, const auto& y) {
+    return std::equal(std::begin(x.mean_from_centre), std::end(x.mean_from_centre), y.mean_from_centre) &&
+           std::equal(std::begin(x.inverse_covariance), std::end(x.inverse_covariance), y.inverse_covariance) &&
+           x.weight == y.weight && x.mean_confidence == y.mean_confidence;
+  };
+  EXPECT_TRUE(std::equal(a.packedCells().begin(), a.packedCells().end(), b.packedCells().begin(), b.packedCells().end(),
+                         sameFields));
+  EXPECT_TRUE(std::equal(a.cells().begin(), a.cells().end(), b.cells().begin(), b.cells().end(), sameFields));
+}
+inline void expectEqualTargets(const NdtTarget& a, const NdtTarget& b) {
+  expectEqualLevels(a.fine(), b.fine());
+  expectEqualLevels(a.coarse(), b.coarse());
 }
 
 inline std::string contentOf(const std::filesystem::path& path) {

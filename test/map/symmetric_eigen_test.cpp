@@ -15,6 +15,8 @@
 namespace saw_ndt {
 namespace {
 
+using namespace internal;
+
 using Matrices = std::vector<Eigen::Matrix3d>;
 
 class SymmetricEigen : public testing::TestWithParam<InstructionSet> {

@@ -6,7 +6,7 @@
 #include <random>
 #include <tuple>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 /// What VoxelIndex does, the slow way.
@@ -28,11 +28,11 @@ class BruteForce {
 void expectNeighbours(const VoxelIndex& index, const BruteForce& expected, const VoxelCoordinate& voxel,
                       VoxelIndex::Cursor& cursor) {
   ASSERT_EQ(index.find(voxel), expected.find(voxel)) << voxel.transpose();
-  const std::int32_t* cell = index.cell(voxel, cursor);
+  const VoxelIndex::Place place = index.place(voxel, cursor);
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        const std::int32_t number = cell == nullptr ? VoxelIndex::kNone : cell[VoxelIndex::neighbourOffset(dx, dy, dz)];
+        const std::int32_t number = place ? place.number(dx, dy, dz) : VoxelIndex::kNone;
         ASSERT_EQ(number, expected.find(voxel + VoxelCoordinate(dx, dy, dz)))
             << voxel.transpose() << " and " << dx << ' ' << dy << ' ' << dz;
       }
@@ -59,6 +59,7 @@ TEST(VoxelIndex, AgreesWithBruteForceEverywhere) {
     voxels = distinct(voxels);
     const VoxelIndex index(voxels);
     const BruteForce expected(voxels);
+    EXPECT_EQ(index.voxels(), voxels);
     VoxelIndex::Cursor cursor;
     for (const VoxelCoordinate& voxel : voxels) expectNeighbours(index, expected, voxel, cursor);
     std::uniform_int_distribution<int> further(-extent - 20, extent + 20);
@@ -90,15 +91,38 @@ TEST(VoxelIndex, ReachesTheEndsOfTheCoordinates) {
   EXPECT_EQ(index.find(voxels[0]), 0);
   EXPECT_EQ(index.find(voxels[1]), 1);
   EXPECT_EQ(index.find({0, 0, 0}), VoxelIndex::kNone);
+  EXPECT_EQ(index.voxels(), voxels);
+}
+
+TEST(VoxelIndex, AFullBrickNumbersEveryCellAndItsBorder) {
+  std::vector<VoxelCoordinate> voxels;
+  for (int z = -9; z < 9; ++z) {
+    for (int y = -9; y < 9; ++y) {
+      for (int x = -9; x < 9; ++x) voxels.emplace_back(x, y, z);
+    }
+  }
+  const VoxelIndex index(voxels);
+  const BruteForce expected(voxels);
+  VoxelIndex::Cursor cursor;
+  for (const VoxelCoordinate& voxel : voxels) expectNeighbours(index, expected, voxel, cursor);
+}
+
+TEST(VoxelIndex, CountsOfTenBitsAreThoseOfTheirBits) {
+  for (std::uint32_t bits = 0; bits < 1024; ++bits) {
+    std::uint32_t count = 0;
+    for (std::uint32_t left = bits; left != 0; left >>= 1U) count += left & 1U;
+    ASSERT_EQ(countOfTenBits(bits), count);
+    ASSERT_EQ(countOfTenBits(bits | 0xFFFFFC00U), count);
+  }
 }
 
 TEST(VoxelIndex, AnEmptyIndexFindsNothing) {
   for (const VoxelIndex& index : {VoxelIndex(), VoxelIndex(std::vector<VoxelCoordinate>())}) {
     VoxelIndex::Cursor cursor;
     EXPECT_EQ(index.find({0, 0, 0}), VoxelIndex::kNone);
-    EXPECT_EQ(index.cell({1, 2, 3}, cursor), nullptr);
+    EXPECT_FALSE(index.place({1, 2, 3}, cursor));
   }
 }
 
 }  // namespace
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

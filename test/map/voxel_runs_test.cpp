@@ -18,6 +18,8 @@
 namespace saw_ndt {
 namespace {
 
+using namespace internal;
+
 using Cloud = pcl::PointCloud<pcl::PointXYZL>;
 using Key = std::tuple<int, int, int, std::uint32_t>;
 
@@ -50,7 +52,7 @@ void expectPlainSums(const pcl::PointCloud<PointT>& cloud, const Eigen::Isometry
     for (const int threads : {1, 2, 3}) {
       WeightedMapBuilder builder(resolution_m);
       addCloud(builder, cloud, T_map_cloud, threads);
-      const WeightedVoxelMap map = builder.build({}, threads);
+      const WeightedVoxelMap map = builder.build();
       EXPECT_EQ(map.origin().point_count, expected.point_count);
       ASSERT_EQ(map.entries().size(), expected.sums.size());
       for (const LabelledVoxelSums& entry : map.entries()) {
@@ -154,24 +156,13 @@ TEST(VoxelRuns, LevelsDoNotDependOnThreadsOrInstructionSet) {
   WeightedMapBuilder builder(0.5);
   addCloud(builder, cloud, Eigen::Isometry3d::Identity());
   limitInstructionSet(InstructionSet::BASELINE);
-  const WeightedVoxelMap expected = builder.build();
-  ASSERT_GT(expected.entries().size(), 4000U);
+  const WeightedVoxelMap map = builder.build();
+  ASSERT_GT(map.entries().size(), 4000U);
+  const NdtTarget expected(map, {}, 1, CellPrecision::SINGLE_AND_DOUBLE);
   for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
     limitInstructionSet(set);
     for (const int threads : {1, 2, 3, 0}) {
-      const WeightedVoxelMap map = builder.build({}, threads);
-      for (const auto& [level, expected_level] :
-           {std::pair(&map.fine(), &expected.fine()), std::pair(&map.coarse(), &expected.coarse())}) {
-        ASSERT_EQ(level->size(), expected_level->size());
-        for (std::size_t i = 0; i < level->size(); ++i) {
-          const VoxelStatistics voxel = level->voxel(i), expected_voxel = expected_level->voxel(i);
-          ASSERT_EQ(voxel.voxel, expected_voxel.voxel);
-          ASSERT_EQ(voxel.mean_from_centre, expected_voxel.mean_from_centre);
-          ASSERT_EQ(voxel.inverse_covariance, expected_voxel.inverse_covariance);
-          ASSERT_EQ(voxel.structure_class, expected_voxel.structure_class);
-          ASSERT_EQ(voxel.weight, expected_voxel.weight);
-        }
-      }
+      expectEqualTargets(NdtTarget(map, {}, threads, CellPrecision::SINGLE_AND_DOUBLE), expected);
     }
   }
   limitInstructionSet(InstructionSet::AVX512);

@@ -197,9 +197,9 @@ TEST(VoxelWeights, MeanConfidenceOfMixedLabelsByHand) {
   const auto voxelWith = [&](const ConfidenceOptions& confidence) {
     VoxelWeighting weighting;
     weighting.confidence = confidence;
-    const WeightedVoxelMap map = mapOf(cloud, 1.0, weighting);
-    EXPECT_EQ(map.fine().size(), 1U);
-    return map.fine().voxel(0);
+    const std::vector<VoxelStatistics> voxels = mapOf(cloud, 1.0).statistics(weighting);
+    EXPECT_EQ(voxels.size(), 1U);
+    return voxels.at(0);
   };
   // Default: (2 * 0.65 + 6 * 1 + 4 * 0.85) / 12 = 10.7 / 12. Planar: sigma_x^2 : sigma_y^2 is 0.6 : 0.72 (sums of
   // squares 3 * 2 * (0.3^2 + 0.1^2) and 8 * 0.3^2), f_L = 1 - sqrt(0.6 / 0.72) = 0.09.

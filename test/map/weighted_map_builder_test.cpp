@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <random>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "expect_throws.h"
 #include "map_fixtures.h"
 #include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/version.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
@@ -45,20 +46,6 @@ WeightedMapBuilder builderOf(const std::vector<Scan>& scans) {
   WeightedMapBuilder builder(0.8);
   for (const Scan& scan : scans) addCloud(builder, scan.cloud, scan.T_map_cloud);
   return builder;
-}
-
-void expectEqualLevels(const NdtLevel& a, const NdtLevel& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const VoxelStatistics va = a.voxel(i), vb = b.voxel(i);
-    ASSERT_EQ(va.voxel, vb.voxel);
-    ASSERT_EQ(va.point_count, vb.point_count);
-    ASSERT_EQ(va.mean_from_centre, vb.mean_from_centre);
-    ASSERT_EQ(va.inverse_covariance, vb.inverse_covariance);
-    ASSERT_EQ(va.mean_confidence, vb.mean_confidence);
-    ASSERT_EQ(va.structure_class, vb.structure_class);
-    ASSERT_EQ(va.weight, vb.weight);
-  }
 }
 
 TEST(WeightedMapBuilder, AnyOrderOfCloudsAndPointsGivesTheSameBytes) {
@@ -157,7 +144,7 @@ TEST(WeightedMapBuilder, RefusesWhatDoesNotHoldAndStaysAsItWas) {
   expectThrows<std::invalid_argument>([&] { addCloud(builder, bad, T); }, {"label = 3"});
   Eigen::Isometry3d not_finite = T;
   not_finite.translation().x() = std::nan("");
-  expectThrows<std::invalid_argument>([&] { addCloud(builder, mixedCloud(1, 50), not_finite); }, {"T_map_cloud"});
+  expectThrows<std::invalid_argument>([&] { addCloud(builder, mixedCloud(1, 50), not_finite); }, {"T_map_scan"});
   EXPECT_EQ(builder.build().origin().scan_count, 0U);
   EXPECT_TRUE(builder.build().entries().empty());
   expectThrows<std::invalid_argument>([&] { builder.merge(WeightedMapBuilder(0.5)); }, {"resolution_m = 0.5"});
@@ -179,55 +166,95 @@ TEST(WeightedMapBuilder, ProjectedCoordinatesKeepTheirMillimetres) {
   WeightedMapBuilder far(1.0);
   addCloud(far, cloud, T_far);
   const WeightedVoxelMap map = far.build();
-  for (const bool coarse : {false, true}) {
-    const NdtLevel& near_level = coarse ? expected.coarse() : expected.fine();
-    const NdtLevel& far_level = coarse ? map.coarse() : map.fine();
-    const VoxelCoordinate voxel_offset = coarse ? VoxelCoordinate(offset / 3) : offset;
-    ASSERT_EQ(far_level.size(), near_level.size());
-    for (std::size_t i = 0; i < near_level.size(); ++i) {
-      const VoxelStatistics near_voxel = near_level.voxel(i);
-      const std::int32_t found = far_level.index().find(near_voxel.voxel + voxel_offset);
-      ASSERT_NE(found, VoxelIndex::kNone);
-      const VoxelStatistics far_voxel = far_level.voxel(static_cast<std::size_t>(found));
-      ASSERT_EQ(far_voxel.point_count, near_voxel.point_count);
-      ASSERT_EQ(far_voxel.structure_class, near_voxel.structure_class);
-      ASSERT_NEAR(far_voxel.weight, near_voxel.weight, 1e-12);
-      const double resolution_m = near_level.resolution();
-      ASSERT_LE(
-          (far_voxel.mean(resolution_m) - offset.cast<double>() - near_voxel.mean(resolution_m)).cwiseAbs().maxCoeff(),
-          1e-6);
-      ASSERT_LE((far_voxel.covariance - near_voxel.covariance).cwiseAbs().maxCoeff(), 1e-6);
-    }
+  const std::vector<VoxelStatistics> near_voxels = expected.statistics(), far_voxels = map.statistics();
+  ASSERT_EQ(far_voxels.size(), near_voxels.size());
+  for (const VoxelStatistics& near_voxel : near_voxels) {
+    const auto far_voxel = map.find((near_voxel.voxel + offset).cast<double>() + Eigen::Vector3d(0.5, 0.5, 0.5));
+    ASSERT_TRUE(far_voxel);
+    ASSERT_EQ(far_voxel->point_count, near_voxel.point_count);
+    ASSERT_EQ(far_voxel->structure_class, near_voxel.structure_class);
+    ASSERT_NEAR(far_voxel->weight, near_voxel.weight, 1e-12);
+    ASSERT_LE((far_voxel->mean(1.0) - offset.cast<double>() - near_voxel.mean(1.0)).cwiseAbs().maxCoeff(), 1e-6);
+    ASSERT_LE((far_voxel->covariance - near_voxel.covariance).cwiseAbs().maxCoeff(), 1e-6);
   }
-}
-
-TEST(WeightedVoxelMap, ReweightedEqualsBuildingWithThoseOptions) {
-  const WeightedMapBuilder builder = builderOf(drive());
-  VoxelWeighting weighting;
-  weighting.confidence = ConfidenceOptions::paper();
-  weighting.linear_alpha = 0.3;
-  weighting.min_points_per_voxel = 10;
-  weighting.min_eigenvalue_ratio = 0.05;
-  weighting.coarse_factor = 2;
-  const WeightedVoxelMap built = builder.build(weighting);
-  const WeightedVoxelMap reweighted = builder.build().reweighted(weighting);
-  expectEqualLevels(reweighted.fine(), built.fine());
-  expectEqualLevels(reweighted.coarse(), built.coarse());
-  EXPECT_NE(builder.build().fine().size(), built.fine().size());
-  EXPECT_TRUE(savedBytes(reweighted) == savedBytes(builder.build()));
-  weighting.coarse_factor = 0;
-  expectThrows<std::invalid_argument>([&] { built.reweighted(weighting); }, {"coarse_factor = 0"});
+  const NdtTarget near_target(expected), far_target(map);
+  const std::vector<VoxelCoordinate> coarse_voxels = near_target.coarse().index().voxels();
+  ASSERT_EQ(far_target.coarseVoxelCount(), coarse_voxels.size());
+  for (const VoxelCoordinate& voxel : coarse_voxels) {
+    ASSERT_NE(far_target.coarse().index().find(voxel + offset / 3), internal::VoxelIndex::kNone);
+  }
 }
 
 TEST(WeightedVoxelMap, UniformConfidencesEqualAnUnlabelledMapBitForBit) {
   VoxelWeighting uniform;
   uniform.confidence = ConfidenceOptions::uniform();
   const LabelledCloud cloud = mixedCloud(6, 8000);
-  const WeightedVoxelMap labelled = mapOf(cloud, 1.0, uniform);
+  const WeightedVoxelMap labelled = mapOf(cloud, 1.0);
   const WeightedVoxelMap unlabelled = mapOf(withoutLabels(cloud));
-  expectEqualLevels(labelled.fine(), unlabelled.fine());
-  expectEqualLevels(labelled.coarse(), unlabelled.coarse());
+  expectEqualTargets(NdtTarget(labelled, uniform), NdtTarget(unlabelled));
   EXPECT_GT(labelled.entries().size(), unlabelled.entries().size());
+}
+
+TEST(WeightedVoxelMap, FindsTheStatisticsOfEachVoxelAndOfNoOther) {
+  const WeightedVoxelMap map = builderOf(drive()).build();
+  VoxelWeighting weighting;
+  weighting.confidence = ConfidenceOptions::paper();
+  const std::vector<VoxelStatistics> voxels = map.statistics(weighting, 2);
+  ASSERT_GT(voxels.size(), 100U);
+  EXPECT_EQ(map.voxelCount(weighting, 2), voxels.size());
+  EXPECT_GT(map.voxelCount(), voxels.size());
+  for (const VoxelStatistics& expected : voxels) {
+    const auto found = map.find(expected.mean(map.resolution()), weighting);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->voxel, expected.voxel);
+    ASSERT_EQ(found->point_count, expected.point_count);
+    ASSERT_EQ(found->mean_from_centre, expected.mean_from_centre);
+    ASSERT_EQ(found->covariance, expected.covariance);
+    ASSERT_EQ(found->weight, expected.weight);
+  }
+  EXPECT_FALSE(map.find({900.0, 0.0, 0.0}));
+  EXPECT_FALSE(map.find({-900.0, 0.0, 0.0}));
+  EXPECT_FALSE(map.find({std::nan(""), 0.0, 0.0}));
+  EXPECT_FALSE(map.find({1e300, 0.0, 0.0}));
+  EXPECT_FALSE(WeightedVoxelMap().find({0.0, 0.0, 0.0}));
+  EXPECT_TRUE(WeightedVoxelMap().statistics().empty());
+}
+
+TEST(WeightedMapBuilder, TellsHowItsLabelsWereMade) {
+  SegmentationOptions segmentation;
+  segmentation.ground.slope_deg = 9.0;
+  WeightedMapBuilder builder(1.0, segmentation);
+  addCloud(builder, mixedCloud(1, 100), Eigen::Isometry3d::Identity());
+  const MapOrigin origin = builder.build().origin();
+  EXPECT_EQ(origin.software_version, SAW_NDT_VERSION);
+  ASSERT_TRUE(origin.segmentation);
+  EXPECT_FALSE(firstDifference(*origin.segmentation, segmentation));
+  expectThrows<std::invalid_argument>(
+      [&] { addCloud(builder, withoutLabels(mixedCloud(1, 100)), Eigen::Isometry3d::Identity()); }, {"no labels"});
+  segmentation.ground.slope_deg = -1.0;
+  expectThrows<std::invalid_argument>([&] { WeightedMapBuilder(1.0, segmentation); }, {"slope_deg = -1"});
+}
+
+TEST(WeightedMapBuilder, BuildersOfOtherSegmentationsDoNotMerge) {
+  SegmentationOptions segmentation;
+  WeightedMapBuilder builder(1.0, segmentation);
+  addCloud(builder, mixedCloud(1, 100), Eigen::Isometry3d::Identity());
+  segmentation.ground.slope_deg = 9.25;
+  expectThrows<std::invalid_argument>([&] { builder.merge(WeightedMapBuilder(1.0, segmentation)); },
+                                      {"ground.slope_deg", " 8 ", " 9.25 "});
+  expectThrows<std::invalid_argument>([&] { builder.merge(WeightedMapBuilder(1.0)); }, {"known"});
+  EXPECT_EQ(builder.origin().scan_count, 1U);
+}
+
+TEST(WeightedMapBuilder, CopiesAreApartAndABuilderThatWasBuiltFromStartsAnew) {
+  const std::vector<Scan> scans = drive();
+  WeightedMapBuilder builder = builderOf(scans);
+  const std::string expected = savedBytes(builder.build());
+  const WeightedMapBuilder copy = builder;
+  EXPECT_TRUE(savedBytes(std::move(builder).build()) == expected);
+  EXPECT_TRUE(savedBytes(copy.build()) == expected);
+  builder.merge(copy);
+  EXPECT_TRUE(savedBytes(builder.build()) == expected);
 }
 
 TEST(WeightedVoxelMap, RefusesAVoxelAndLabelGivenTwice) {

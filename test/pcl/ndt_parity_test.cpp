@@ -48,7 +48,7 @@ class PclNdt : public pcl::NormalDistributionsTransform<pcl::PointXYZ, pcl::Poin
   }
 
   // Our own level made of PCL's voxels.
-  NdtLevel level() {
+  internal::NdtLevel level() {
     std::vector<VoxelStatistics> voxels;
     for (const auto& entry : target_cells_.getLeaves()) {
       const auto& leaf = entry.second;
@@ -61,7 +61,9 @@ class PclNdt : public pcl::NormalDistributionsTransform<pcl::PointXYZ, pcl::Poin
       voxel.inverse_covariance = leaf.getInverseCov();
       voxels.push_back(voxel);
     }
-    return NdtLevel(getResolution(), voxels);
+    internal::NdtCells cells;
+    cells.add(voxels, CellPrecision::SINGLE_AND_DOUBLE);
+    return internal::NdtLevel(getResolution(), std::move(cells));
   }
 
   void prepare() {
@@ -81,7 +83,7 @@ TEST(PclParity, ScoreGradientAndHessianOnTheSameVoxels) {
   PclNdt pcl_ndt;
   pcl_ndt.setInputTarget(xyzOf(streetCorner(1)));
   pcl_ndt.prepare();
-  const NdtLevel level = pcl_ndt.level();
+  const internal::NdtLevel level = pcl_ndt.level();
   const auto source_cloud = xyzOf(streetCorner(2, 1000));
   pcl_ndt.setInputSource(source_cloud);
   SourcePoints source;

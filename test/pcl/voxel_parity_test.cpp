@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <pcl/filters/voxel_grid_covariance.h>
 
-#include "map_fixtures.h"
+#include "map/map_fixtures.h"
 #include "real_data.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 
@@ -15,13 +15,14 @@ void expectParity(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::si
   pcl::VoxelGridCovariance<pcl::PointXYZ> grid;
   grid.setInputCloud(cloud);
   grid.setLeafSize(1.0F, 1.0F, 1.0F);
-  ASSERT_EQ(grid.getMinPointPerVoxel(), map.weighting().min_points_per_voxel);
-  ASSERT_EQ(grid.getCovEigValueInflationRatio(), map.weighting().min_eigenvalue_ratio);
+  ASSERT_EQ(grid.getMinPointPerVoxel(), VoxelWeighting().min_points_per_voxel);
+  ASSERT_EQ(grid.getCovEigValueInflationRatio(), VoxelWeighting().min_eigenvalue_ratio);
   grid.filter(true);
 
   std::size_t voxel_count = 0;
   for (const auto& [index, leaf] : grid.getLeaves()) voxel_count += leaf.nr_points >= 6 ? 1 : 0;
-  EXPECT_EQ(map.fine().size(), voxel_count);
+  const std::vector<VoxelStatistics> voxels = map.statistics();
+  EXPECT_EQ(voxels.size(), voxel_count);
   EXPECT_GE(voxel_count, fewest_voxels);
 
   // Points are rounded by h = half a step: 7.6 micrometres. That moves a mean by h at most. A deviation from the mean
@@ -32,8 +33,7 @@ void expectParity(const pcl::PointCloud<pcl::PointXYZ>::ConstPtr& cloud, std::si
   const double h = 0.5 / kStepsPerVoxel;
   const double bound = 3.0 * 2.0 * h * 1.2;
   double change_sum = 0.0;
-  for (std::size_t i = 0; i < map.fine().size(); ++i) {
-    const VoxelStatistics voxel = map.fine().voxel(i);
+  for (const VoxelStatistics& voxel : voxels) {
     Eigen::Vector3f centre = (voxel.voxel.cast<float>().array() + 0.5F).matrix();
     const auto* leaf = grid.getLeaf(centre);
     ASSERT_NE(leaf, nullptr) << voxel.voxel.transpose();

@@ -176,8 +176,8 @@ TEST(WeightedNdt, ResolutionAndMinPointsTakeEffectInAnyOrder) {
   after.setInputTarget(target);
   after.setResolution(0.5f);
   after.setMinPointPerVoxel(20);
-  EXPECT_EQ(before.getTargetMap()->fine().size(), after.getTargetMap()->fine().size());
-  EXPECT_EQ(after.getTargetMap()->resolution(), 0.5);
+  EXPECT_EQ(before.getTargetMap().voxelCount(), after.getTargetMap().voxelCount());
+  EXPECT_EQ(after.getTargetMap().resolution(), 0.5);
   EXPECT_THROW(after.setResolution(0.0f), std::invalid_argument);
   EXPECT_THROW(after.setMinPointPerVoxel(2), std::invalid_argument);
 }
@@ -208,7 +208,7 @@ TEST(WeightedNdt, DoubleScalarKeepsMillimetresInProjectedCoordinates) {
   WeightedMapBuilder builder(1.0);
   addCloud(builder, streetCorner(1), T_map_corner);
   WeightedNormalDistributionsTransform<pcl::PointXYZ, pcl::PointXYZ, double> ndt;
-  ndt.setTargetMap(std::make_shared<const WeightedVoxelMap>(builder.build()));
+  ndt.setTargetMap(NdtTarget(builder.build()));
   ndt.setInputSource(plain(streetCorner(2, 1500)));
   std::mt19937 random(3);
   Plain output;
@@ -237,9 +237,34 @@ TEST(WeightedNdt, ALabelThatIsNoneIsRefusedAndTheOldTargetStays) {
   (*bad)[7].label = 40;
   LabelledNdt ndt;
   ndt.setInputTarget(pcl::make_shared<Labelled>(streetCorner(1)));
-  const auto map = ndt.getTargetMap();
+  const NdtTarget map = ndt.getTargetMap();
   EXPECT_THROW(ndt.setInputTarget(bad), std::invalid_argument);
-  EXPECT_EQ(ndt.getTargetMap(), map);
+  EXPECT_TRUE(ndt.getTargetMap().sharesLevelsWith(map));
+}
+
+TEST(WeightedNdt, DoubleArithmeticTakesEffectInAnyOrderAndRefusesAMapWithoutDoubles) {
+  const auto target = plain(streetCorner(1)), source = plain(streetCorner(2, 500));
+  AlignmentOptions exact;
+  exact.arithmetic = Arithmetic::DOUBLE;
+  Ndt before, after, single;
+  before.setAlignmentOptions(exact);
+  before.setInputTarget(target);
+  after.setInputTarget(target);
+  after.setAlignmentOptions(exact);
+  single.setInputTarget(target);
+  Plain output;
+  for (Ndt* ndt : {&before, &after, &single}) {
+    ndt->setInputSource(source);
+    ndt->align(output, guessOf(1));
+    EXPECT_TRUE(ndt->hasConverged());
+  }
+  EXPECT_EQ(before.getFinalTransformation(), after.getFinalTransformation());
+  EXPECT_LT((before.getFinalTransformation() - single.getFinalTransformation()).norm(), 1e-4f);
+  after.setTargetMap(single.getTargetMap());
+  EXPECT_THROW(after.align(output, guessOf(1)), std::invalid_argument);
+  after.setAlignmentOptions({});
+  after.align(output, guessOf(1));
+  EXPECT_EQ(after.getFinalTransformation(), single.getFinalTransformation());
 }
 
 TEST(WeightedNdt, ConvertTransformIsPcls) {

@@ -4,16 +4,12 @@
 
 #include "registration/ndt_evaluation.h"
 #include "registration/registration_fixtures.h"
-#include "saw_ndt/map/weighted_map_builder.h"
-#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 namespace {
 
-WeightedVoxelMap cornerMap(const Eigen::Isometry3d& T_map_corner = Eigen::Isometry3d::Identity()) {
-  WeightedMapBuilder builder(1.0);
-  addCloud(builder, streetCorner(1), T_map_corner);
-  return builder.build();
+NdtTarget cornerMap(const Eigen::Isometry3d& T_map_corner = Eigen::Isometry3d::Identity()) {
+  return exactTargetOf(streetCorner(1), T_map_corner);
 }
 
 double distance(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -25,7 +21,7 @@ double angle(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }
 
 TEST(NdtAligner, FindsTheTruePoseFromManyStartsWithAndWithoutWeights) {
-  const WeightedVoxelMap map = cornerMap();
+  const NdtTarget map = cornerMap();
   const SourcePoints source = sourceOf(streetCorner(2, 1500));
   NdtAligner aligner;
   std::mt19937 random(11);
@@ -43,7 +39,7 @@ TEST(NdtAligner, FindsTheTruePoseFromManyStartsWithAndWithoutWeights) {
 }
 
 TEST(NdtAligner, TheResultIsAMaximumOfTheScore) {
-  const WeightedVoxelMap map = cornerMap();
+  const NdtTarget map = cornerMap();
   const SourcePoints source = sourceOf(streetCorner(2, 1500));
   NdtAligner aligner;
   AlignmentOptions options;
@@ -60,7 +56,7 @@ TEST(NdtAligner, TheResultIsAMaximumOfTheScore) {
 }
 
 TEST(NdtAligner, FindsAPoseMetresAwayWithTheCoarseLevelAlone) {
-  const WeightedVoxelMap map = cornerMap();
+  const NdtTarget map = cornerMap();
   const SourcePoints source = sourceOf(streetCorner(2, 1500));
   Eigen::Isometry3d guess = Eigen::Isometry3d::Identity();
   guess.translation() = Eigen::Vector3d(1.6, -1.4, 0.2);
@@ -72,7 +68,7 @@ TEST(NdtAligner, FindsAPoseMetresAwayWithTheCoarseLevelAlone) {
 }
 
 TEST(NdtAligner, SameBitsForAnyNumberOfThreads) {
-  const WeightedVoxelMap map = cornerMap();
+  const NdtTarget map = cornerMap();
   const SourcePoints source = sourceOf(streetCorner(2));
   NdtAligner aligner;
   std::mt19937 random(13);
@@ -90,7 +86,7 @@ TEST(NdtAligner, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(NdtAligner, TellsTheIterationLimitFromConvergence) {
-  const WeightedVoxelMap map = cornerMap();
+  const NdtTarget map = cornerMap();
   const SourcePoints source = sourceOf(streetCorner(2, 500));
   std::mt19937 random(14);
   const Eigen::Isometry3d guess = randomPose(random, 0.3, 0.05);
@@ -110,7 +106,7 @@ TEST(NdtAligner, TellsTheIterationLimitFromConvergence) {
 }
 
 TEST(NdtAligner, WithoutOverlapSourceOrTargetItSaysSo) {
-  const WeightedVoxelMap map = cornerMap();
+  const NdtTarget map = cornerMap();
   const SourcePoints source = sourceOf(streetCorner(2, 100));
   Eigen::Isometry3d far = Eigen::Isometry3d::Identity();
   far.translation().x() = 5000.0;
@@ -123,12 +119,11 @@ TEST(NdtAligner, WithoutOverlapSourceOrTargetItSaysSo) {
     EXPECT_FALSE(result.converged());
     EXPECT_EQ(result.T_map_source.matrix(), far.matrix());
     EXPECT_EQ(aligner.align(map, {}, far, options).status, AlignmentStatus::NO_SOURCE);
-    EXPECT_EQ(aligner.align(WeightedVoxelMap(), source, far, options).status, AlignmentStatus::NO_TARGET);
+    EXPECT_EQ(aligner.align(NdtTarget(), source, far, options).status, AlignmentStatus::NO_TARGET);
   }
 }
 
 TEST(NdtAligner, AMapOfOneVoxelKeepsEveryFigureFinite) {
-  WeightedMapBuilder builder(1.0);
   pcl::PointCloud<pcl::PointXYZL> cloud;
   std::mt19937 random(15);
   std::uniform_real_distribution<float> uniform(0.1f, 0.9f);
@@ -140,9 +135,8 @@ TEST(NdtAligner, AMapOfOneVoxelKeepsEveryFigureFinite) {
     point.label = 2;
     cloud.push_back(point);
   }
-  addCloud(builder, cloud, Eigen::Isometry3d::Identity());
-  const WeightedVoxelMap map = builder.build();
-  ASSERT_EQ(map.fine().size(), 1u);
+  const NdtTarget map = exactTargetOf(cloud);
+  ASSERT_EQ(map.voxelCount(), 1u);
   NdtAligner aligner;
   const AlignmentResult result = aligner.align(map, sourceOf(cloud), randomPose(random, 0.1, 0.05), {});
   EXPECT_TRUE(result.T_map_source.matrix().allFinite());
@@ -153,7 +147,7 @@ TEST(NdtAligner, AMapOfOneVoxelKeepsEveryFigureFinite) {
 TEST(NdtAligner, MillimetresAreKeptInProjectedCoordinates) {
   Eigen::Isometry3d T_map_corner = Eigen::Isometry3d::Identity();
   T_map_corner.translation() = Eigen::Vector3d(500000.0, 4649776.0, 120.0);
-  const WeightedVoxelMap near_map = cornerMap(), far_map = cornerMap(T_map_corner);
+  const NdtTarget near_map = cornerMap(), far_map = cornerMap(T_map_corner);
   const SourcePoints source = sourceOf(streetCorner(2, 1500));
   NdtAligner aligner;
   std::mt19937 random(16);
@@ -167,7 +161,7 @@ TEST(NdtAligner, MillimetresAreKeptInProjectedCoordinates) {
 }
 
 TEST(NdtAligner, RefusesOptionsThatDoNotHoldAndNamesThem) {
-  const WeightedVoxelMap map = cornerMap();
+  const NdtTarget map = cornerMap();
   NdtAligner aligner;
   AlignmentOptions options;
   options.outlier_ratio = 1.0;
@@ -180,6 +174,22 @@ TEST(NdtAligner, RefusesOptionsThatDoNotHoldAndNamesThem) {
   Eigen::Isometry3d guess = Eigen::Isometry3d::Identity();
   guess.translation().x() = std::nan("");
   EXPECT_THROW(aligner.align(map, sourceOf(streetCorner(2, 100)), guess, {}), std::invalid_argument);
+}
+
+TEST(NdtAligner, DoublesGiveThePoseOfSinglesAndNeedTheirCells) {
+  const NdtTarget map = cornerMap();
+  const SourcePoints source = sourceOf(streetCorner(2, 1500));
+  NdtAligner aligner;
+  std::mt19937 random(17);
+  const Eigen::Isometry3d guess = randomPose(random, 0.3, 0.05);
+  AlignmentOptions exact;
+  exact.arithmetic = Arithmetic::DOUBLE;
+  EXPECT_LT(distance(aligner.align(map, source, guess, exact).T_map_source,
+                     aligner.align(map, source, guess, {}).T_map_source),
+            1e-4);
+  WeightedMapBuilder builder(1.0);
+  addCloud(builder, streetCorner(1), Eigen::Isometry3d::Identity());
+  EXPECT_THROW(aligner.align(NdtTarget(builder.build()), source, guess, exact), std::invalid_argument);
 }
 
 }  // namespace

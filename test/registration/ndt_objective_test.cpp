@@ -3,17 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "registration/registration_fixtures.h"
-#include "saw_ndt/map/weighted_map_builder.h"
-#include "saw_ndt/pcl/cloud_view.h"
+#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {
-
-WeightedVoxelMap mapOf(const pcl::PointCloud<pcl::PointXYZL>& cloud) {
-  WeightedMapBuilder builder(1.0);
-  addCloud(builder, cloud, Eigen::Isometry3d::Identity());
-  return builder.build();
-}
 
 Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6d& step) {
   Eigen::Isometry3d result = T;
@@ -40,7 +33,7 @@ auto centralDifference(const Function& f) -> decltype(f(0.0)) {
 
 // Analytic derivatives against central differences; the steps of 1e-5 move no point across an event.
 TEST_P(NdtObjectiveDerivatives, AgreeWithCentralDifferences) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map = exactTargetOf(streetCorner(1));
   const SourcePoints all = sourceOf(streetCorner(2, 300));
   const PairWeighting weighting{GetParam().weighted, 0.1, map.weighting().confidence};
   const NdtObjective objective(map.fine(), GetParam().method, scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0),
@@ -73,7 +66,7 @@ TEST_P(NdtObjectiveDerivatives, AgreeWithCentralDifferences) {
 }
 
 TEST_P(NdtObjectiveDerivatives, InEulerAnglesAgreeWithCentralDifferences) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map = exactTargetOf(streetCorner(1));
   const SourcePoints all = sourceOf(streetCorner(2, 300));
   const PairWeighting weighting{GetParam().weighted, 0.1, map.weighting().confidence};
   const NdtObjective objective(map.fine(), GetParam().method, scoreParameters(ScoreFunction::Paper, 0.55, 1.0),
@@ -115,22 +108,23 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{NeighborhoodSearchMethod::RADIUS, false}, Case{NeighborhoodSearchMethod::RADIUS, true}));
 
 TEST(NdtObjective, EveryModeMeetsThePairsThatABruteForceSearchMeets) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map = exactTargetOf(streetCorner(1));
   const SourcePoints source = sourceOf(streetCorner(5, 500));
   std::mt19937 random(6);
   const Eigen::Isometry3d T = randomPose(random, 0.5, 0.2);
-  const NdtLevel& level = map.fine();
+  const internal::NdtLevel& level = map.fine();
+  const std::vector<VoxelCoordinate> voxels = level.index().voxels();
+  const std::vector<Eigen::Vector3d> means = level.means();
   std::size_t direct1 = 0, direct7 = 0, direct26 = 0, radius = 0;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const Eigen::Vector3d p = T * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
     const VoxelCoordinate voxel = p.array().floor().matrix().cast<int>();
     for (std::size_t v = 0; v < level.size(); ++v) {
-      const VoxelStatistics statistics = level.voxel(v);
-      const VoxelCoordinate difference = (statistics.voxel - voxel).cwiseAbs();
+      const VoxelCoordinate difference = (voxels[v] - voxel).cwiseAbs();
       direct1 += difference.maxCoeff() == 0;
       direct7 += difference.sum() <= 1;
       direct26 += difference.maxCoeff() <= 1;
-      radius += (p - statistics.mean(1.0)).norm() <= 1.0;
+      radius += (p - means[v]).norm() <= 1.0;
     }
   }
   NdtObjective::Workspace workspace;
@@ -144,7 +138,7 @@ TEST(NdtObjective, EveryModeMeetsThePairsThatABruteForceSearchMeets) {
 }
 
 TEST(NdtObjective, SameBitsForAnyNumberOfThreads) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map = exactTargetOf(streetCorner(1));
   const SourcePoints source = sourceOf(streetCorner(2));
   const NdtObjective objective(map.fine(), NeighborhoodSearchMethod::DIRECT7, {}, {true, 0.1, {}});
   NdtObjective::Workspace workspace;
@@ -187,7 +181,7 @@ TEST(NdtObjective, WeightOfAPairIsWhatEquationOneSays) {
   }
   VoxelWeighting weighting;
   weighting.confidence = ConfidenceOptions::paper();
-  const WeightedVoxelMap map = mapOf(target).reweighted(weighting);
+  const NdtTarget map = exactTargetOf(target, Eigen::Isometry3d::Identity(), weighting);
   ASSERT_EQ(map.fine().size(), 1u);
   SourcePoints source;
   source.labelled = true;
@@ -204,12 +198,9 @@ TEST(NdtObjective, WeightOfAPairIsWhatEquationOneSays) {
 
 TEST(NdtObjective, FarFromTheOriginNothingIsLost) {
   pcl::PointCloud<pcl::PointXYZL> cloud = streetCorner(1);
-  WeightedMapBuilder near_builder(1.0), far_builder(1.0);
   Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
   shift.translation() = Eigen::Vector3d(500000.0, 5000000.0, -300.0);
-  addCloud(near_builder, cloud, Eigen::Isometry3d::Identity());
-  addCloud(far_builder, cloud, shift);
-  const WeightedVoxelMap near_map = near_builder.build(), far_map = far_builder.build();
+  const NdtTarget near_map = exactTargetOf(cloud), far_map = exactTargetOf(cloud, shift);
   const SourcePoints source = sourceOf(streetCorner(2, 500));
   std::mt19937 random(8);
   const Eigen::Isometry3d T = randomPose(random, 0.2, 0.05);
@@ -225,7 +216,7 @@ TEST(NdtObjective, FarFromTheOriginNothingIsLost) {
 }
 
 TEST(NdtObjective, APoseThatIsNotFiniteOrTooFarMeetsNothing) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1, 100));
+  const NdtTarget map = exactTargetOf(streetCorner(1, 100));
   const SourcePoints source = sourceOf(streetCorner(2, 100));
   const NdtObjective objective(map.fine(), NeighborhoodSearchMethod::DIRECT7, {}, {});
   NdtObjective::Workspace workspace;
@@ -234,6 +225,14 @@ TEST(NdtObjective, APoseThatIsNotFiniteOrTooFarMeetsNothing) {
     T.translation().x() = x;
     EXPECT_EQ(objective.evaluate(source, T, 1, workspace).pair_count, 0u);
   }
+}
+
+TEST(NdtObjective, ATargetWithoutDoublesIsRefusedWithWhatIsMissing) {
+  WeightedMapBuilder builder(1.0);
+  addCloud(builder, streetCorner(1, 100), Eigen::Isometry3d::Identity());
+  const NdtTarget target(builder.build());
+  expectThrows<std::invalid_argument>([&] { NdtObjective(target.fine(), NeighborhoodSearchMethod::DIRECT7, {}, {}); },
+                                      {"Arithmetic::DOUBLE", "SINGLE_AND_DOUBLE"});
 }
 
 }  // namespace

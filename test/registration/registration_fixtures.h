@@ -5,10 +5,15 @@
 
 #include <Eigen/Geometry>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "map/ndt_level.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/common/labels.h"
+#include "saw_ndt/map/ndt_target.h"
+#include "saw_ndt/map/weighted_map_builder.h"
+#include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {
@@ -49,7 +54,9 @@ inline SourcePoints sourceOf(const pcl::PointCloud<pcl::PointXYZL>& cloud, bool 
 /// Pairs appear and vanish where a point crosses the face of a voxel of 1 m (DIRECT) or a sphere around a mean
 /// (RADIUS), which no derivative describes and where rounding decides: leaves out the points within 1 mm of such an
 /// event at T.
-inline SourcePoints awayFromEvents(const SourcePoints& source, const Eigen::Isometry3d& T, const NdtLevel& level) {
+inline SourcePoints awayFromEvents(const SourcePoints& source, const Eigen::Isometry3d& T,
+                                   const internal::NdtLevel& level) {
+  const std::vector<Eigen::Vector3d> means = level.means();
   SourcePoints kept;
   kept.labelled = source.labelled;
   for (std::size_t i = 0; i < source.size(); ++i) {
@@ -61,7 +68,7 @@ inline SourcePoints awayFromEvents(const SourcePoints& source, const Eigen::Isom
         for (int x = -1; x <= 1; ++x) {
           const auto number = level.index().find(voxel + VoxelCoordinate(x, y, z));
           if (number < 0) continue;
-          const double distance = (p - level.voxel(static_cast<std::size_t>(number)).mean(1.0)).norm();
+          const double distance = (p - means[static_cast<std::size_t>(number)]).norm();
           keep = keep && std::abs(distance - 1.0) > 1e-3;
         }
       }
@@ -69,6 +76,15 @@ inline SourcePoints awayFromEvents(const SourcePoints& source, const Eigen::Isom
     if (keep) kept.add(source.x[i], source.y[i], source.z[i], static_cast<StructuralLabel>(source.label[i]));
   }
   return kept;
+}
+
+/// The target of a labelled cloud in 1 m voxels, with cells in double precision too.
+inline NdtTarget exactTargetOf(const pcl::PointCloud<pcl::PointXYZL>& cloud,
+                               const Eigen::Isometry3d& T_map_cloud = Eigen::Isometry3d::Identity(),
+                               const VoxelWeighting& weighting = {}) {
+  WeightedMapBuilder builder(1.0);
+  addCloud(builder, cloud, T_map_cloud);
+  return NdtTarget(std::move(builder).build(), weighting, 1, CellPrecision::SINGLE_AND_DOUBLE);
 }
 
 /// A pose whose every component is uniform within the bounds (m, rad).

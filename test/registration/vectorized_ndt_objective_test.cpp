@@ -8,9 +8,7 @@
 #include <tuple>
 
 #include "common/instruction_set.h"
-#include "map/map_fixtures.h"
 #include "registration/registration_fixtures.h"
-#include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
 namespace {
@@ -42,7 +40,7 @@ constexpr double kTolerance = 2e-5;
 
 TEST_P(VectorizedNdtObjectiveModes, AgreesWithDoublePrecision) {
   limitInstructionSet(GetParam().instruction_set);
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map = exactTargetOf(streetCorner(1));
   const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0);
   const PairWeighting weighting{GetParam().weighted, 0.3, map.weighting().confidence};
   const NdtObjective expected_objective(map.fine(), GetParam().method, score, weighting);
@@ -92,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(EveryModeAndInstructionSet, VectorizedNdtObjectiveModes
                          nameOf);
 
 TEST_F(VectorizedNdtObjectiveTest, SameBitsForAnyNumberOfThreads) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map = exactTargetOf(streetCorner(1));
   const SourcePoints source = sourceOf(streetCorner(2));
   const VectorizedNdtObjective objective(map.fine(), NeighborhoodSearchMethod::DIRECT7, {}, {true, 0.1, {}});
   for (const InstructionSet set : kInstructionSets) {
@@ -120,14 +118,12 @@ TEST_F(VectorizedNdtObjectiveTest, SameBitsForAnyNumberOfThreads) {
 TEST_F(VectorizedNdtObjectiveTest, FarFromTheOriginNothingIsLost) {
   Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
   shift.translation() = Eigen::Vector3d(500000.0, 5000000.0, -300.0);
-  WeightedMapBuilder far_builder(1.0);
-  addCloud(far_builder, streetCorner(1), shift);
-  const WeightedVoxelMap near_map = mapOf(streetCorner(1)), far_map = far_builder.build();
+  const NdtTarget near_map = exactTargetOf(streetCorner(1)), far_map = exactTargetOf(streetCorner(1), shift);
   OrderedSource source = ordered(sourceOf(streetCorner(2, 500)));
   std::mt19937 random(8);
   const Eigen::Isometry3d T = randomPose(random, 0.2, 0.05);
   const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0);
-  const auto evaluate = [&](const WeightedVoxelMap& map, const Eigen::Isometry3d& pose) {
+  const auto evaluate = [&](const NdtTarget& map, const Eigen::Isometry3d& pose) {
     return VectorizedNdtObjective(map.fine(), NeighborhoodSearchMethod::DIRECT7, score, {})
         .evaluate(source, pose, 1, workspace_);
   };
@@ -137,7 +133,7 @@ TEST_F(VectorizedNdtObjectiveTest, FarFromTheOriginNothingIsLost) {
 }
 
 TEST_F(VectorizedNdtObjectiveTest, APoseThatIsNotFiniteOrTooFarMeetsNothing) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1, 100));
+  const NdtTarget map = exactTargetOf(streetCorner(1, 100));
   OrderedSource source = ordered(sourceOf(streetCorner(2, 100)));
   const VectorizedNdtObjective objective(map.fine(), NeighborhoodSearchMethod::DIRECT7, {}, {});
   for (const double x : {1e12, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
@@ -149,7 +145,7 @@ TEST_F(VectorizedNdtObjectiveTest, APoseThatIsNotFiniteOrTooFarMeetsNothing) {
 
 // Points out of reach pair with nothing and leave the sums of the others alone.
 TEST_F(VectorizedNdtObjectiveTest, PointsFarOutAreHarmless) {
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map = exactTargetOf(streetCorner(1));
   const SourcePoints near_points = sourceOf(streetCorner(2, 300));
   SourcePoints with_far_points = near_points;
   for (const float far : {1e5F, 3e9F, 1e20F, std::numeric_limits<float>::max()}) {
@@ -184,7 +180,7 @@ std::vector<Point> sortedPoints(const OrderedSource& source) {
 
 TEST_F(VectorizedNdtObjectiveTest, OrderingKeepsEveryPointWithItsLabelAndConfidence) {
   const ConfidenceOptions confidence{0.2, 0.4, 0.9};
-  const WeightedVoxelMap map = mapOf(streetCorner(1));
+  const NdtTarget map = exactTargetOf(streetCorner(1));
   std::mt19937 random(9);
   for (const int points : {0, 1, 3, 400, 2000}) {
     const SourcePoints source = sourceOf(streetCorner(2, points));

@@ -22,7 +22,7 @@ void addPoint(LabelledCloud& cloud, float x, float y, float z, std::uint32_t lab
 
 /// Three voxels of 0.5 m. (0, 0, 0): 8 points on a plane, 6 of them ground and 2 non-ground. (-4, 0, 0): 6 noise points
 /// on a line. (10, -2, 3): one lone point, too few for a distribution.
-WeightedVoxelMap threeVoxels(const VoxelWeighting& weighting = {}) {
+WeightedVoxelMap threeVoxels() {
   LabelledCloud cloud;
   for (int i = 0; i < 8; ++i) {
     const auto row = static_cast<float>(i / 4), column = static_cast<float>(i % 4);
@@ -32,7 +32,7 @@ WeightedVoxelMap threeVoxels(const VoxelWeighting& weighting = {}) {
   addPoint(cloud, 5.1F, -0.9F, 1.6F, 2);
   WeightedMapBuilder builder(0.5);
   addCloud(builder, cloud, Eigen::Isometry3d::Identity());
-  return builder.build(weighting);
+  return builder.build();
 }
 
 TEST(MapSummary, CountsByHand) {
@@ -73,6 +73,33 @@ TEST(MapSummary, AsJsonAndAsText) {
   EXPECT_NE(text.find("label_points.noise_share      0.4\n"), std::string::npos) << text;
 }
 
+TEST(MapSummary, TellsHowTheMapWasMade) {
+  MapOrigin origin = threeVoxels().origin();
+  origin.segmentation = SegmentationOptions();
+  origin.segmentation->ground.slope_deg = 9.5;
+  origin.software_version = "1.2.3";
+  const MapSummary summary = summarize(WeightedVoxelMap(origin, threeVoxels().entries()));
+  const auto json = nlohmann::json::parse(toJsonText(summary));
+  EXPECT_EQ(json.at("software_version"), "1.2.3");
+  EXPECT_EQ(json.at("segmentation").at("sensor.name"), "HDL-64E");
+  EXPECT_EQ(json.at("segmentation").at("sensor.elevations_deg").size(), 64U);
+  EXPECT_EQ(json.at("segmentation").at("ground.rule"), "growing");
+  EXPECT_EQ(json.at("segmentation").at("ground.slope_deg"), 9.5);
+  EXPECT_EQ(json.at("segmentation").at("ground.smooths"), true);
+  EXPECT_NE(toText(summary).find("segmentation.ground.slope_deg"), std::string::npos) << toText(summary);
+}
+
+TEST(MapSummary, SaysWhatIsNotKnown) {
+  MapOrigin origin = threeVoxels().origin();
+  origin.software_version.clear();
+  const MapSummary summary = summarize(WeightedVoxelMap(origin, threeVoxels().entries()));
+  const auto json = nlohmann::json::parse(toJsonText(summary));
+  EXPECT_EQ(json.at("software_version"), "not known");
+  EXPECT_EQ(json.at("segmentation"), "not known");
+  EXPECT_NE(toText(summary).find("segmentation                  \"not known\"\n"), std::string::npos)
+      << toText(summary);
+}
+
 TEST(MapSummary, AnUnlabelledMapTellsNoLabels) {
   pcl::PointCloud<pcl::PointXYZ> cloud;
   for (int i = 0; i < 10; ++i) cloud.push_back({0.1F * static_cast<float>(i), 0.5F, 0.5F});
@@ -80,11 +107,13 @@ TEST(MapSummary, AnUnlabelledMapTellsNoLabels) {
   addCloud(builder, cloud, Eigen::Isometry3d::Identity());
   VoxelWeighting weighting;
   weighting.coarse_factor = 1;
-  const MapSummary summary = summarize(builder.build(weighting));
+  const MapSummary summary = summarize(builder.build(), weighting);
   EXPECT_FALSE(summary.labelled);
   EXPECT_EQ(summary.coarse_resolution_m, 0.0);
   EXPECT_EQ(summary.voxels, 1U);
-  EXPECT_FALSE(nlohmann::json::parse(toJsonText(summary)).contains("label_points"));
+  const auto json = nlohmann::json::parse(toJsonText(summary));
+  EXPECT_FALSE(json.contains("label_points"));
+  EXPECT_FALSE(json.contains("segmentation"));
 }
 
 TEST(MapSummary, OfAnEmptyMapIsZero) {
@@ -121,7 +150,7 @@ TEST(VoxelCloud, LabelsThatTakeNoPartAreNoVoxelsLabel) {
   VoxelWeighting weighting;
   weighting.confidence = ConfidenceOptions::paper();
   // Seven ground and seven non-ground points are left.
-  EXPECT_EQ(voxelCloud(builder.build(weighting)).front().label, 2U);
+  EXPECT_EQ(voxelCloud(builder.build(), weighting).front().label, 2U);
 }
 
 }  // namespace

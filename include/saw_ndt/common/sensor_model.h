@@ -19,7 +19,8 @@ struct SAW_NDT_EXPORT SensorModel {
   /// Height of the range image: one row per beam.
   int rows() const { return static_cast<int>(elevations_deg.size()); }
 
-  /// Throws std::invalid_argument that names the field unless: 1 to 1024 rows, 8 to 16384 columns, elevations within
+  /// Throws std::invalid_argument that names the field unless: no control character in the name, 1 to 1024 rows, 8 to
+  /// 16384 columns, elevations within
   /// (-90, 90) degrees and strictly decreasing.
   void check() const;
 

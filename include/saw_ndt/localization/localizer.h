@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "saw_ndt/common/export.h"
@@ -10,6 +9,7 @@
 #include "saw_ndt/localization/motion_prediction.h"
 #include "saw_ndt/localization/pose_judge.h"
 #include "saw_ndt/localization/scan_preparation.h"
+#include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 
@@ -23,6 +23,8 @@ struct SAW_NDT_EXPORT LocalizerOptions {
   MotionPredictionOptions prediction;
   AlignmentOptions alignment;  ///< use_weights, mismatch_penalty and outlier_ratio are the method's
   AcceptanceOptions acceptance;
+  /// Go on where the labels of the map were made by other segmentation options, such as those of another sensor.
+  bool allow_other_segmentation = false;
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
@@ -63,11 +65,15 @@ using SourceAligner =
 /// to scan. One object for each vehicle, not to be shared by threads; the map may be.
 class SAW_NDT_EXPORT Localizer {
  public:
-  /// @param map  read with options.method.voxels
-  /// @throws std::invalid_argument where an option does not hold, or the map has no labels while the method segments
-  Localizer(std::shared_ptr<const WeightedVoxelMap> map, const LocalizerOptions& options);
-  /// Reads a map file, which takes less memory than a map. @throws Error where it is missing or damaged, too
+  /// Makes its own target of a map.
+  /// @throws std::invalid_argument where an option does not hold, the map has no labels while the method segments, or its
+  ///         labels were made by other segmentation options than these and allow_other_segmentation is not set
+  Localizer(const WeightedVoxelMap& map, const LocalizerOptions& options);
+  /// Makes it of a map file, which takes less memory. @throws Error where it is missing or damaged
   Localizer(const std::string& map_file, const LocalizerOptions& options);
+  /// Shares a target with others.
+  /// @param target  made with options.method.voxels: std::invalid_argument where it was not
+  Localizer(const NdtTarget& target, const LocalizerOptions& options);
   /// With an aligner of one's own.
   /// @throws std::invalid_argument where an option does not hold
   Localizer(SourceAligner aligner, const LocalizerOptions& options);

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "map/ndt_level.h"
+#include "saw_ndt/map/voxel_statistics.h"
+#include "saw_ndt/segmentation/segmentation_options.h"
 
 namespace saw_ndt {
 
@@ -14,54 +17,50 @@ struct MapOrigin {
   bool labelled = false;          ///< whether the points carried structural labels
   std::uint64_t scan_count = 0;   ///< clouds added
   std::uint64_t point_count = 0;  ///< finite points added, over all labels
+  /// How the labels were made; nothing where there are none or that is not known.
+  std::optional<SegmentationOptions> segmentation;
+  /// Version of this library that added the points, without line breaks; empty where it is not known.
+  std::string software_version;
+
+  /// Throws std::invalid_argument that names the field and its value.
+  void check() const;
 };
 
-/// The weighted NDT map of the paper (Section III.B): for every voxel its index, mean, covariance, mean confidence,
-/// structure class, point count and weight, on a fine level and on a coarser one whose voxels add up the fine ones.
-/// It keeps the exact integer sums that these follow from, so that maps can be merged, saved without loss, and read
-/// again with other confidences. A value: immutable once made, and safe to read from many threads.
+/// The store of a map: for every voxel and label the exact integer sums of its points. The distributions, classes and
+/// weights of the paper (Section III.B) follow from them, so that maps can be merged, saved without loss and read with
+/// any confidences. A value: immutable once made, and safe to read from many threads.
 class WeightedVoxelMap {
  public:
   WeightedVoxelMap() = default;
   /// @param entries  each voxel and label at most once, in any order
-  /// @param threads  0: all cores; the map does not depend on it
-  /// @throws std::invalid_argument for options that do not hold, or an entry given twice
-  WeightedVoxelMap(const MapOrigin& origin, std::vector<LabelledVoxelSums> entries,
-                   const VoxelWeighting& weighting = {}, int threads = 1);
+  /// @throws std::invalid_argument for an origin that does not hold, or an entry given twice
+  WeightedVoxelMap(const MapOrigin& origin, std::vector<LabelledVoxelSums> entries);
 
   const MapOrigin& origin() const { return origin_; }
-  /// Edge of a fine voxel (m).
+  /// Edge of a voxel (m).
   double resolution() const { return origin_.resolution_m; }
   /// Whether its points carried labels; without them there are no weights, and matching is classical NDT.
   bool labelled() const { return origin_.labelled; }
-  const VoxelWeighting& weighting() const { return weighting_; }
-
-  /// The voxels that have a distribution.
-  const NdtLevel& fine() const { return fine_; }
-  /// The same at coarse_factor times the edge; empty where coarse_factor is 1.
-  const NdtLevel& coarse() const { return coarse_; }
-  /// Whether there is nothing to match against.
-  bool empty() const { return fine_.empty(); }
-
-  /// The exact sums, ordered by tile, voxel (z, y, x) and label.
+  /// The exact sums in map order: by tile of 64^3 voxels, then voxel, each by z, y and x, then label.
   const std::vector<LabelledVoxelSums>& entries() const { return entries_; }
 
-  /// The same points read with other confidences and weights.
-  WeightedVoxelMap reweighted(const VoxelWeighting& weighting, int threads = 1) const {
-    return {origin_, entries_, weighting, threads};
-  }
+  /// The statistics of every voxel that has a distribution, in map order.
+  /// @param threads  0: all cores; the result does not depend on it
+  /// @throws std::invalid_argument where the weighting does not hold
+  std::vector<VoxelStatistics> statistics(const VoxelWeighting& weighting = {}, int threads = 0) const;
+  /// How many voxels have a distribution.
+  std::size_t voxelCount(const VoxelWeighting& weighting = {}, int threads = 0) const;
+  /// The statistics of the voxel that holds a position in the map frame (m); nothing where it has no distribution.
+  std::optional<VoxelStatistics> find(const Eigen::Vector3d& position_m, const VoxelWeighting& weighting = {}) const;
 
   /// Writes the map file (see map_file.h). @throws Error
   void save(const std::string& path) const;
   /// Reads a map file. @throws Error where it is missing, damaged, truncated or foreign
-  static WeightedVoxelMap load(const std::string& path, const VoxelWeighting& weighting = {}, int threads = 1);
+  static WeightedVoxelMap load(const std::string& path);
 
  private:
   MapOrigin origin_;
-  VoxelWeighting weighting_;
   std::vector<LabelledVoxelSums> entries_;
-  NdtLevel fine_;
-  NdtLevel coarse_;
 };
 
 }  // namespace saw_ndt

@@ -3,8 +3,7 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/registration.h>
 
-#include <memory>
-
+#include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 
 namespace saw_ndt {
@@ -50,9 +49,10 @@ class WeightedNormalDistributionsTransform : public pcl::Registration<PointSourc
   void setInputSource(const PointCloudSourceConstPtr& cloud) override;
 
   /// Registers to a map instead of a cloud; getFitnessScore() then measures to the means of its voxels.
-  void setTargetMap(const std::shared_ptr<const WeightedVoxelMap>& map);
-  /// The target's voxels, null before there is a target.
-  const std::shared_ptr<const WeightedVoxelMap>& getTargetMap() const { return map_; }
+  /// Arithmetic::DOUBLE needs one made with CellPrecision::SINGLE_AND_DOUBLE.
+  void setTargetMap(const NdtTarget& map);
+  /// The target's voxels; empty before there is a target.
+  const NdtTarget& getTargetMap() const { return map_; }
 
   /// Edge of a voxel (m) of a target cloud. @throws std::invalid_argument unless positive, std::logic_error where the
   /// target is a map of another resolution, which cannot be cut anew
@@ -105,13 +105,14 @@ class WeightedNormalDistributionsTransform : public pcl::Registration<PointSourc
 
  private:
   void buildTarget(const PointCloudTarget& cloud);
+  void rebuildTarget();
   SourcePoints selectedSource() const;
   AlignmentOptions effectiveOptions() const;
 
   AlignmentOptions options_;
   VoxelWeighting weighting_;
   float resolution_ = 1.0f;
-  std::shared_ptr<const WeightedVoxelMap> map_;
+  NdtTarget map_;
   bool target_is_map_ = false;
   NdtAligner aligner_;
   AlignmentResult result_;

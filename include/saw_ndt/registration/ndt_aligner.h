@@ -3,14 +3,14 @@
 #include <memory>
 
 #include "saw_ndt/common/export.h"
-#include "saw_ndt/map/weighted_voxel_map.h"
+#include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/registration/alignment.h"
 #include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {
 
-/// Registers source points to a map. Holds nothing but scratch memory that calls reuse, which copies do not share: not
-/// to be used by several threads at the same time. The map may be shared.
+/// Registers source points to a target. Holds nothing but scratch memory that calls reuse, which copies do not share: not
+/// to be used by several threads at the same time. The target may be shared.
 class SAW_NDT_EXPORT NdtAligner {
  public:
   NdtAligner();
@@ -20,7 +20,7 @@ class SAW_NDT_EXPORT NdtAligner {
 
   /// @param guess  T_map_source to start from
   /// @throws std::invalid_argument for options that do not hold or a guess that is not finite
-  AlignmentResult align(const WeightedVoxelMap& map, const SourcePoints& source, const Eigen::Isometry3d& guess,
+  AlignmentResult align(const NdtTarget& target, const SourcePoints& source, const Eigen::Isometry3d& guess,
                         const AlignmentOptions& options);
 
  private:

@@ -6,81 +6,13 @@
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/common/scan_view.h"
-#include "saw_ndt/common/sensor_model.h"
+#include "saw_ndt/segmentation/segmentation_options.h"
 
 namespace saw_ndt {
 
 namespace internal {
 struct SegmentationStages;
 }
-
-/// How ground is told in a range image.
-enum class GroundRule {
-  /// The paper's and LeGO-LOAM's: the line between vertically adjacent pixels is nearly level.
-  Inclination,
-  /// Ground is followed outward from below the sensor, column by column: a return belongs to it where it lies on from
-  /// the last ground return and near the height that ground may have reached by then; then neighbours settle what is
-  /// doubtful.
-  Growing,
-};
-
-/// How ground is told from the rest.
-struct SAW_NDT_EXPORT GroundOptions {
-  /// Which rule applies.
-  GroundRule rule = GroundRule::Growing;
-
-  /// Inclination: greatest inclination in degrees between vertically adjacent pixels of ground, 0 to 90.
-  double inclination_limit_deg = 10.0;
-  /// Inclination: beams above this elevation in degrees never see ground. An HDL-64E is left its lowest 51 beams.
-  double inclination_top_elevation_deg = -2.0;
-
-  /// Growing: height of the sensor above ground in metres; 0: estimated in each scan.
-  double sensor_height_m = 0.0;
-  /// Growing: greatest slope of ground in degrees, 0 to 60.
-  double slope_deg = 8.0;
-  /// Growing: by how many metres the height of a ground return may miss that of the last one in its column, beyond the
-  /// slope: roughness and range noise.
-  double step_tolerance_m = 0.06;
-  /// Growing: by how many metres ground may stand out from a profile that rises no faster than the slope: a kerb. It
-  /// keeps ground from climbing a wall by many small steps.
-  double profile_tolerance_m = 0.15;
-  /// Growing: whether each pixel is compared with its eight neighbours at last.
-  bool smooths = true;
-
-  /// Throws std::invalid_argument that names the field and its value.
-  void check() const;
-};
-
-/// What is noise: components that are too small. The defaults are LeGO-LOAM's.
-struct SAW_NDT_EXPORT ComponentOptions {
-  /// Neighbours are connected where the line between them makes more than this angle in degrees with the line of sight
-  /// to the farther one, above 0 and below 90.
-  double connection_angle_deg = 60.0;
-  /// A component of this many points or more, all returns of its pixels counted, is kept, at least 1.
-  int minimum_points = 30;
-  /// So is a smaller one of this many points or more, at least 1, if it spans enough rings.
-  int minimum_points_tall = 5;
-  /// Rings that such a smaller component must span, at least 1.
-  int minimum_rings_tall = 3;
-
-  /// Throws std::invalid_argument that names the field and its value.
-  void check() const;
-};
-
-/// Options of ScanSegmenter and RangeImageSegmentation.
-struct SAW_NDT_EXPORT SegmentationOptions {
-  /// Beams and image width of the sensor.
-  SensorModel sensor = SensorModel::named("HDL-64E");
-  /// Angle in degrees by which the sensor's x axis points below the horizon, -90 to 90.
-  double mounting_pitch_deg = 0.0;
-  /// How ground is told.
-  GroundOptions ground;
-  /// What is noise.
-  ComponentOptions components;
-
-  /// Throws std::invalid_argument that names the field and its value.
-  void check() const;
-};
 
 /// Range-image segmentation of a scan (section III.A of the paper): the label of every point. It allocates nothing once
 /// it has seen a scan as large as the present one. Not to be shared by threads that call it at the same time.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
@@ -42,17 +43,17 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::set
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setTargetMap(
-    const std::shared_ptr<const WeightedVoxelMap>& map) {
-  if (!map) throw std::invalid_argument("setTargetMap: the map is a null pointer");
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setTargetMap(const NdtTarget& map) {
   map_ = map;
-  resolution_ = static_cast<float>(map->resolution());
+  resolution_ = static_cast<float>(map.resolution());
   target_is_map_ = true;
   // pcl::Registration will not align without a target cloud.
   auto means = pcl::make_shared<PointCloudTarget>();
-  means->resize(map->fine().size());
-  for (std::size_t i = 0; i < map->fine().size(); ++i) {
-    (*means)[i].getVector3fMap() = map->fine().voxel(i).mean(map->resolution()).template cast<float>();
+  means->reserve(map.voxelCount());
+  for (const Eigen::Vector3d& mean : map.means()) {
+    PointTarget point;
+    point.getVector3fMap() = mean.template cast<float>();
+    means->push_back(point);
   }
   this->target_ = means;
   this->target_cloud_updated_ = true;
@@ -63,7 +64,14 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::bui
     const PointCloudTarget& cloud) {
   WeightedMapBuilder builder(resolution_);
   addCloud(builder, cloud, Eigen::Isometry3d::Identity(), options_.threads);
-  map_ = std::make_shared<const WeightedVoxelMap>(builder.build(weighting_, options_.threads));
+  map_ =
+      NdtTarget(std::move(builder).build(), weighting_, options_.threads,
+                options_.arithmetic == Arithmetic::DOUBLE ? CellPrecision::SINGLE_AND_DOUBLE : CellPrecision::SINGLE);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::rebuildTarget() {
+  if (this->target_ && !target_is_map_) buildTarget(*this->target_);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -74,7 +82,7 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::set
     throw std::logic_error("setResolution: the target is a map of resolution " + std::to_string(resolution_));
   }
   resolution_ = resolution;
-  if (this->target_) buildTarget(*this->target_);
+  rebuildTarget();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -90,16 +98,16 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::set
     const VoxelWeighting& weighting) {
   weighting.check();
   weighting_ = weighting;
-  if (map_ && !target_is_map_) {
-    map_ = std::make_shared<const WeightedVoxelMap>(map_->reweighted(weighting, options_.threads));
-  }
+  rebuildTarget();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setAlignmentOptions(
     const AlignmentOptions& options) {
   options.check();
+  const bool other_cells = options.arithmetic != options_.arithmetic;
   options_ = options;
+  if (other_cells) rebuildTarget();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -123,7 +131,7 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 SourcePoints WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::selectedSource() const {
   constexpr bool kLabelled = pcl::traits::has_label<PointSource>::value;
   SourcePoints points;
-  points.labelled = kLabelled && options_.use_weights && map_->labelled();
+  points.labelled = kLabelled && options_.use_weights && map_.labelled();
   points.reserve(this->indices_->size());
   for (const auto index : *this->indices_) {
     const PointSource& point = (*this->input_)[static_cast<std::size_t>(index)];
@@ -132,7 +140,7 @@ SourcePoints WeightedNormalDistributionsTransform<PointSource, PointTarget, Scal
     if constexpr (kLabelled) {
       if (points.labelled) {
         label = structuralLabelFromValue(point.label);
-        if (map_->weighting().confidence.of(label) <= 0.0) continue;
+        if (map_.weighting().confidence.of(label) <= 0.0) continue;
       }
     }
     points.add(point.x, point.y, point.z, label);
@@ -168,7 +176,7 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::com
   Eigen::Isometry3d T_target_source;
   T_target_source.matrix() = guess.template cast<double>();
   if (T_target_source.matrix().allFinite()) T_target_source = normalizedRotation(T_target_source);
-  result_ = aligner_.align(*map_, selectedSource(), T_target_source, effectiveOptions());
+  result_ = aligner_.align(map_, selectedSource(), T_target_source, effectiveOptions());
 
   this->converged_ = result_.converged();
   this->nr_iterations_ = result_.iterations;

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saw_ndt/map/weighted_voxel_map.h"
+
+namespace saw_ndt {
+
+namespace internal {
+class NdtLevel;
+}
+
+/// Which cells of its voxels a target keeps.
+enum class CellPrecision {
+  SINGLE,             ///< what Arithmetic::SINGLE reads
+  SINGLE_AND_DOUBLE,  ///< what Arithmetic::DOUBLE reads as well, at more than twice the memory
+};
+
+/// What scans are registered to: the weighted NDT map of the paper (Section III.B). For every voxel it has mean,
+/// inverse covariance, mean confidence and weight, on a fine level and on a coarser one whose voxels add up the fine
+/// ones. Derived once from the sums of a map with one weighting, and then apart from them. A value: immutable, cheap to
+/// copy since copies share the levels, and safe to read from many threads.
+class NdtTarget {
+ public:
+  /// A target without voxels.
+  NdtTarget();
+  /// @param threads  0: all cores; the target does not depend on it
+  /// @throws std::invalid_argument where the weighting does not hold
+  explicit NdtTarget(const WeightedVoxelMap& map, const VoxelWeighting& weighting = {}, int threads = 0,
+                     CellPrecision precision = CellPrecision::SINGLE);
+
+  /// The target of a map file, as of the map read from it, without ever having all of its sums in memory.
+  /// @throws Error as WeightedVoxelMap::load(), std::invalid_argument where the weighting does not hold
+  static NdtTarget load(const std::string& path, const VoxelWeighting& weighting = {}, int threads = 0);
+
+  const MapOrigin& origin() const;
+  /// Edge of a fine voxel (m).
+  double resolution() const { return origin().resolution_m; }
+  /// Whether the points carried labels; without them there are no weights, and matching is classical NDT.
+  bool labelled() const { return origin().labelled; }
+  const VoxelWeighting& weighting() const;
+
+  /// How many fine voxels have a distribution.
+  std::size_t voxelCount() const;
+  /// How many voxels of coarse_factor times the edge have one; 0 where coarse_factor is 1.
+  std::size_t coarseVoxelCount() const;
+  /// Whether there is nothing to match against.
+  bool empty() const { return voxelCount() == 0; }
+  /// The means of the fine voxels in the map frame (m), tile after tile, exact to about 1e-7 of a voxel.
+  std::vector<Eigen::Vector3d> means() const;
+  /// Whether two targets are copies of one.
+  bool sharesLevelsWith(const NdtTarget& other) const { return levels_ == other.levels_; }
+
+  /// For this project's own code.
+  const internal::NdtLevel& fine() const;
+  const internal::NdtLevel& coarse() const;
+
+ private:
+  struct Levels;
+  explicit NdtTarget(std::shared_ptr<const Levels> levels) : levels_(std::move(levels)) {}
+
+  std::shared_ptr<const Levels> levels_;
+};
+
+}  // namespace saw_ndt

@@ -1,0 +1,50 @@
+#include "map/coarse_sums.h"
+
+#include <array>
+
+#include "map/map_order.h"
+
+namespace saw_ndt::internal {
+namespace {
+
+int floorDivide(int value, int divisor) {
+  const int quotient = value / divisor;
+  return value % divisor < 0 ? quotient - 1 : quotient;
+}
+
+}  // namespace
+
+void CoarseSums::add(const LabelledVoxelSums* first, const LabelledVoxelSums* last) {
+  // Fine voxels that follow each other often share their coarse one: its places in the table are kept, by label.
+  std::array<std::size_t, kStructuralLabelCount> places{};
+  std::array<bool, kStructuralLabelCount> known{};
+  VoxelCoordinate parent = VoxelCoordinate::Zero();
+  for (; first != last; ++first) {
+    VoxelCoordinate voxel;
+    std::array<std::int64_t, 3> shift;  // from the fine voxel's centre to the coarse one's
+    for (int axis = 0; axis < 3; ++axis) {
+      voxel[axis] = floorDivide(first->voxel[axis], factor_);
+      const std::int64_t place =
+          static_cast<std::int64_t>(first->voxel[axis]) - static_cast<std::int64_t>(voxel[axis]) * factor_;
+      shift[static_cast<std::size_t>(axis)] = (2 * place + 1 - factor_) * (kStepsPerVoxel / 2);
+    }
+    if (voxel != parent) {
+      parent = voxel;
+      known.fill(false);
+    }
+    const auto label = static_cast<std::size_t>(first->label);
+    if (!known[label]) {
+      places[label] = table_.placeOf(parent, first->label);
+      known[label] = true;
+    }
+    table_.sums(places[label]) += first->sums.shifted(shift);
+  }
+}
+
+std::vector<LabelledVoxelSums> CoarseSums::takeInMapOrder() {
+  std::vector<LabelledVoxelSums> entries = table_.takeEntries();
+  sortIntoMapOrder(entries);
+  return entries;
+}
+
+}  // namespace saw_ndt::internal

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saw_ndt/segmentation/segmentation_options.h"
+
+namespace saw_ndt::internal {
+
+/// Calls visit(name, field) for every field of the options, in the order of declaration.
+/// @tparam Options  SegmentationOptions, const or not
+template <typename Options, typename Visit>
+void forEachField(Options& options, const Visit& visit) {
+  visit("sensor.name", options.sensor.name);
+  visit("sensor.columns", options.sensor.columns);
+  visit("sensor.elevations_deg", options.sensor.elevations_deg);
+  visit("mounting_pitch_deg", options.mounting_pitch_deg);
+  visit("ground.rule", options.ground.rule);
+  visit("ground.inclination_limit_deg", options.ground.inclination_limit_deg);
+  visit("ground.inclination_top_elevation_deg", options.ground.inclination_top_elevation_deg);
+  visit("ground.sensor_height_m", options.ground.sensor_height_m);
+  visit("ground.slope_deg", options.ground.slope_deg);
+  visit("ground.step_tolerance_m", options.ground.step_tolerance_m);
+  visit("ground.profile_tolerance_m", options.ground.profile_tolerance_m);
+  visit("ground.smooths", options.ground.smooths);
+  visit("components.connection_angle_deg", options.components.connection_angle_deg);
+  visit("components.minimum_points", options.components.minimum_points);
+  visit("components.minimum_points_tall", options.components.minimum_points_tall);
+  visit("components.minimum_rings_tall", options.components.minimum_rings_tall);
+}
+
+/// A field's value as text from which parseField() makes the same value, bit for bit. Several numbers stand apart by
+/// spaces.
+std::string fieldText(const std::string& value);
+std::string fieldText(int value);
+std::string fieldText(double value);
+std::string fieldText(bool value);
+std::string fieldText(GroundRule value);
+std::string fieldText(const std::vector<double>& values);
+
+/// Reads a field from the whole of a text; false where it is none, and the field is then unspecified.
+bool parseField(std::string_view text, std::string& value);
+bool parseField(std::string_view text, int& value);
+bool parseField(std::string_view text, double& value);
+bool parseField(std::string_view text, bool& value);
+bool parseField(std::string_view text, GroundRule& value);
+bool parseField(std::string_view text, std::vector<double>& values);
+
+}  // namespace saw_ndt::internal
