@@ -1,7 +1,6 @@
 #include "saw_ndt/map/ndt_target.h"
 
 #include <cstddef>
-#include <future>
 #include <utility>
 
 #include "common/executor.h"
@@ -105,14 +104,14 @@ NdtTarget NdtTarget::load(const std::string& path, const VoxelWeighting& weighti
   auto levels = std::make_shared<Levels>();
   levels->origin = reader.origin();
   levels->weighting = weighting;
-  // The index of the fine level is made meanwhile.
-  auto coarse_level =
-      std::async(internal::threadCount(threads) > 1 ? std::launch::async : std::launch::deferred, [&reader, &weighting, &coarse] {
-        if (weighting.coarse_factor == 1) return NdtLevel();
-        return coarseLevel(coarse, reader.origin(), weighting, CellPrecision::SINGLE, 1);
-      });
-  levels->fine = NdtLevel(reader.origin().resolution_m, std::move(cells));
-  levels->coarse = coarse_level.get();
+  // Side by side.
+  internal::forEachChunk(threads, 2, [&](std::size_t level, int) {
+    if (level == 0) {
+      levels->fine = NdtLevel(reader.origin().resolution_m, std::move(cells));
+    } else if (weighting.coarse_factor > 1) {
+      levels->coarse = coarseLevel(coarse, reader.origin(), weighting, CellPrecision::SINGLE, 1);
+    }
+  });
   return NdtTarget(std::move(levels));
 }
 
