@@ -20,6 +20,8 @@
 
 namespace saw_ndt {
 
+using namespace internal;
+
 namespace po = boost::program_options;
 
 namespace {
@@ -335,7 +337,7 @@ int runApp(int argc, const char* const* argv, AppOptions& app, const std::functi
   };
   try {
     if (app.parse(argc, argv)) {
-      instructionSet();                    // throws where the environment asks for one that there is not
+      instructionSet();  // throws where the environment asks for one that there is not
       work();
     } else {
       std::cout << app.help();

@@ -66,7 +66,7 @@ typename pcl::PointCloud<PointT>::Ptr thinned(const typename pcl::PointCloud<Poi
   if constexpr (kLabelled) {
     for (const PointT& point : *cloud) labels.push_back(static_cast<saw_ndt::StructuralLabel>(point.label));
   }
-  saw_ndt::SourceVoxelFilter filter(voxel_m);
+  saw_ndt::internal::SourceVoxelFilter filter(voxel_m);
   const saw_ndt::SourcePoints& points = filter.filter(saw_ndt::viewOf(*cloud), kLabelled ? &labels : nullptr);
   auto centroids = pcl::make_shared<pcl::PointCloud<PointT>>();
   centroids->resize(points.size());

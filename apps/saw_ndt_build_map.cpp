@@ -43,13 +43,13 @@ int main(int argc, char** argv) {
     saw_ndt::checkedUsage([&] { return saw_ndt::WeightedMapBuilder(options.resolution_m); });
 
     // Found out before the long work: whether the map can be written. This leaves nothing behind.
-    { const saw_ndt::AtomicOutput probe(map_file); }
+    { const saw_ndt::internal::AtomicOutput probe(map_file); }
 
     saw_ndt::ProgressBar progress(selected.size());
     const saw_ndt::WeightedVoxelMap map =
         saw_ndt::buildDriveMap(*sequence.scans(selected), options, [&] { progress.step(); }).build();
     map.save(map_file);
-    std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution() << " m from "
-              << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";
+    std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution()
+              << " m from " << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";
   });
 }

@@ -50,12 +50,12 @@ std::pair<saw_ndt::Trajectory, saw_ndt::Trajectory> readTrajectories(const Files
                                                            saw_ndt::readTrajectory(files.estimate)};
   auto& [reference, estimate] = both;
   if (reference.format != estimate.format && (files.times.empty() || files.calib.empty())) {
-    const std::string& kitti = reference.format == TrajectoryFormat::Kitti ? files.reference : files.estimate;
+    const std::string& kitti = reference.format == TrajectoryFormat::KITTI ? files.reference : files.estimate;
     throw saw_ndt::UsageError(kitti +
                               " is a KITTI file and the other one a TUM file: -times FILE must give its stamps "
                               "and -calib FILE the calibration of the camera");
   }
-  if (reference.format == TrajectoryFormat::Kitti && estimate.format == TrajectoryFormat::Kitti &&
+  if (reference.format == TrajectoryFormat::KITTI && estimate.format == TrajectoryFormat::KITTI &&
       reference.poses.size() != estimate.poses.size()) {
     throw saw_ndt::Error(files.estimate, "",
                          std::to_string(estimate.poses.size()) + " poses, where " + files.reference + " has " +
@@ -64,7 +64,7 @@ std::pair<saw_ndt::Trajectory, saw_ndt::Trajectory> readTrajectories(const Files
   }
   const Eigen::Isometry3d Tr = files.calib.empty() ? nominalCalibration() : saw_ndt::readKittiCalibration(files.calib);
   for (auto [trajectory, path] : {std::pair(&reference, &files.reference), std::pair(&estimate, &files.estimate)}) {
-    if (trajectory->format != TrajectoryFormat::Kitti) continue;
+    if (trajectory->format != TrajectoryFormat::KITTI) continue;
     if (!files.times.empty()) setStamps(files, *path, *trajectory);
     for (saw_ndt::StampedPose& pose : trajectory->poses) pose.T_map_body = saw_ndt::lidarPose(pose.T_map_body, Tr);
   }

@@ -16,7 +16,7 @@ constexpr char kDescription[] =
     "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
     "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
     "is printed too. A scan that is rejected gets the pose that was predicted for it. Give -sensor, -ground-rule and "
-    "-mounting-pitch_deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
+    "-mounting-pitch-deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
     "pose, and all together they tell the errors.";
 
 saw_ndt::NdtTarget loadTarget(const std::string& file, const saw_ndt::LocalizationMethod& method, int threads) {
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
                 "a scan whose likelihood without weights (unweighted_likelihood in frames.csv) is less is rejected");
   app.addOption("max-correction", &options.acceptance.max_correction_m, "METRES",
                 "a scan moved farther than this from its predicted pose is rejected");
-  app.addOption("max-correction_deg", &options.acceptance.max_correction_deg, "DEGREES",
+  app.addOption("max-correction-deg", &options.acceptance.max_correction_deg, "DEGREES",
                 "a scan turned farther than this from its predicted pose is rejected");
   segmentation.addTo(app);
   app.addFlag("allow-other-segmentation", &options.allow_other_segmentation,

@@ -56,8 +56,8 @@ int main(int argc, char** argv) {
       std::cout << saw_ndt::toJsonText(saw_ndt::scoreGround(labels, classes));
       return;
     }
-    std::cout << pcd_file << ": " << labels.size() << " points, " << countOf(labels, saw_ndt::StructuralLabel::Ground)
-              << " ground, " << countOf(labels, saw_ndt::StructuralLabel::NonGround) << " non-ground, "
-              << countOf(labels, saw_ndt::StructuralLabel::Noise) << " noise\n";
+    std::cout << pcd_file << ": " << labels.size() << " points, " << countOf(labels, saw_ndt::StructuralLabel::GROUND)
+              << " ground, " << countOf(labels, saw_ndt::StructuralLabel::NON_GROUND) << " non-ground, "
+              << countOf(labels, saw_ndt::StructuralLabel::NOISE) << " noise\n";
   });
 }

@@ -24,7 +24,7 @@ constexpr char kDescription[] =
 void readRecorded(const std::string& file, const std::string& times_file, double scan_period_s,
                   std::vector<Eigen::Isometry3d>& T_scene_lidar, std::vector<double>& stamps_s) {
   const saw_ndt::Trajectory trajectory = saw_ndt::readTrajectory(file);
-  const bool of_camera = trajectory.format == saw_ndt::TrajectoryFormat::Kitti;
+  const bool of_camera = trajectory.format == saw_ndt::TrajectoryFormat::KITTI;
   for (const saw_ndt::StampedPose& pose : trajectory.poses) {
     T_scene_lidar.push_back(of_camera ? saw_ndt::lidarPose(pose.T_map_body, saw_ndt::simulatedCalibration())
                                       : pose.T_map_body);

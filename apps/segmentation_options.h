@@ -11,7 +11,7 @@ namespace saw_ndt {
 /// localized in it.
 class SegmentationArguments {
  public:
-  /// Declares -sensor, -ground-rule and -mounting-pitch_deg.
+  /// Declares -sensor, -ground-rule and -mounting-pitch-deg.
   void addTo(AppOptions& app);
   /// What they say. @throws UsageError
   SegmentationOptions options() const;

@@ -20,6 +20,8 @@
 #endif
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 constexpr int kMostScans = 70;
@@ -134,7 +136,7 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr benchmarkTarget(std::size_t most) {
 
 SourcePoints benchmarkSource(const std::vector<LidarPoint>& scan, const LocalizationMethod& method) {
   const ScanView view = viewOf(scan);
-  std::vector<StructuralLabel> labels(scan.size(), StructuralLabel::NonGround);
+  std::vector<StructuralLabel> labels(scan.size(), StructuralLabel::NON_GROUND);
   if (method.segment) ScanSegmenter().segment(view, labels);
   SourceVoxelFilter filter(LocalizerOptions().source_voxel_size_m);
   return filter.filter(view, method.segment ? &labels : nullptr,

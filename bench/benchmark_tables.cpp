@@ -44,7 +44,7 @@ struct Measurement {
 // One line of a table: the same work by each instruction set and number of threads.
 struct Row {
   std::string stage;
-  std::map<saw_ndt::InstructionSet, std::map<int, Measurement>> ours;
+  std::map<saw_ndt::internal::InstructionSet, std::map<int, Measurement>> ours;
 };
 
 struct Program {
@@ -94,7 +94,7 @@ void add(Program& program, const nlohmann::json& benchmark) {
     program.of_pcl.emplace_back(joined({parts.begin() + 1, parts.end()}), measurement);
     return;
   }
-  const saw_ndt::InstructionSet set = saw_ndt::instructionSetNamed(parts.back());
+  const saw_ndt::internal::InstructionSet set = saw_ndt::internal::instructionSetNamed(parts.back());
   parts.pop_back();
   const std::string stage = joined(parts);
   auto row = std::find_if(program.rows.begin(), program.rows.end(), [&](const Row& r) { return r.stage == stage; });
@@ -187,16 +187,16 @@ double milliseconds(const Measurement& measurement, int threads) {
   return threads > 1 ? measurement.real_ms : measurement.cpu_ms;
 }
 
-void print(const Program& program, const std::set<saw_ndt::InstructionSet>& sets) {
+void print(const Program& program, const std::set<saw_ndt::internal::InstructionSet>& sets) {
   std::cout << "\n" << program.title << "\n\n| stage |";
-  for (const saw_ndt::InstructionSet set : sets) std::cout << " " << saw_ndt::toString(set) << ", ms |";
+  for (const saw_ndt::internal::InstructionSet set : sets) std::cout << " " << saw_ndt::toString(set) << ", ms |";
   std::cout << " PCL, ms | PCL / ours | ours, 1 thread | PCL |\n|---|";
   for (std::size_t i = 0; i < sets.size() + 4; ++i) std::cout << "---|";
   std::cout << "\n";
   for (const Row& row : program.rows) {
     std::cout << "| " << row.stage << " |";
     const Measurement* best = nullptr;
-    for (const saw_ndt::InstructionSet set : sets) {
+    for (const saw_ndt::internal::InstructionSet set : sets) {
       std::string cell;
       const auto of_set = row.ours.find(set);
       if (of_set != row.ours.end()) {
@@ -239,7 +239,7 @@ int main(int argc, char** argv) {
   app.addPositionalList("FILE", &files, "written with --benchmark_out=FILE, medians where there are repetitions");
   return saw_ndt::runApp(argc, argv, app, [&] {
     std::vector<Program> programs;
-    std::set<saw_ndt::InstructionSet> sets;
+    std::set<saw_ndt::internal::InstructionSet> sets;
     for (const std::string& file : files) {
       programs.push_back(read(file));
       for (const Row& row : programs.back().rows) {

@@ -177,7 +177,8 @@ int main(int argc, char** argv) {
       for (const std::string& method : methods) {
         for (const int threads : thread_counts) {
           const Times times = measure(drive, method, threads, settings, progress);
-          const saw_ndt::DurationStatistics statistics = saw_ndt::durationStatistics(times.total_ms);
+          const saw_ndt::internal::DurationStatistics statistics =
+              saw_ndt::internal::durationStatistics(times.total_ms);
           std::cout << " " << statistics.mean << " / " << statistics.p95 << " / " << statistics.max << " |";
           rejected += times.rejected;
         }

@@ -24,6 +24,8 @@
 #include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
@@ -59,7 +61,7 @@ const WeightedVoxelMap& fileMap() {
     const int width = 500;
     for (std::size_t i = 0; i < kFileVoxels; ++i) {
       const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-      entries.push_back({{x, y, (x + y) / 32}, StructuralLabel::NonGround, {}});
+      entries.push_back({{x, y, (x + y) / 32}, StructuralLabel::NON_GROUND, {}});
       for (int point = 0; point < 10; ++point) {
         entries.back().sums.add({steps(random), steps(random), steps(random)});
       }

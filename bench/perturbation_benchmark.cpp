@@ -82,7 +82,7 @@ void measure(const Method& method, const Scan& scan, const Eigen::Isometry3d& T_
 }
 
 void print(const std::string& name, const Figures& f) {
-  using saw_ndt::percentile;
+  using saw_ndt::internal::percentile;
   std::cout << std::fixed << "| " << name << " | " << std::setprecision(1) << percentile(f.align_ms, 50) << " / "
             << percentile(f.align_ms, 90) << " | " << std::setprecision(4) << percentile(f.error_m, 50) << " / "
             << percentile(f.error_m, 90) << " / " << percentile(f.error_m, 100) << " | " << percentile(f.error_deg, 50)
@@ -90,7 +90,7 @@ void print(const std::string& name, const Figures& f) {
             << " / " << percentile(f.spread_m, 90) << " | " << std::setprecision(3)
             << static_cast<double>(f.successes) / static_cast<double>(f.error_m.size()) << " | ";
   if (percentile(f.evaluations, 100) > 0.0) {
-    std::cout << std::setprecision(1) << saw_ndt::mean(f.evaluations) << " / " << std::setprecision(0)
+    std::cout << std::setprecision(1) << saw_ndt::internal::mean(f.evaluations) << " / " << std::setprecision(0)
               << percentile(f.evaluations, 100);
   }
   std::cout << " |\n";

@@ -14,7 +14,7 @@ namespace {
 /// Columns of a data block: azimuth to the left of straight ahead (degrees), row from the top, range (m).
 std::vector<std::vector<double>> pixelsOf(const std::string& scan_file, const saw_ndt::SensorModel& sensor) {
   const auto cloud = saw_ndt::readKittiScan(scan_file);
-  saw_ndt::RangeImage image;
+  saw_ndt::internal::RangeImage image;
   image.project(saw_ndt::viewOf(cloud), sensor);
   std::vector<std::vector<double>> columns(3);
   for (int row = 0; row < image.rows(); ++row) {

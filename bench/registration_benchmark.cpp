@@ -16,10 +16,10 @@ using saw_ndt::RegistrationCase;
 void evaluate(benchmark::State& state, const RegistrationCase& scan, int threads) {
   saw_ndt::AlignmentOptions options = scan.options;
   options.threads = threads;
-  saw_ndt::NdtEvaluation source;
+  saw_ndt::internal::NdtEvaluation source;
   source.begin(scan.target, scan.source, options);
-  const saw_ndt::Evaluation evaluation = source.onFineLevel();
-  saw_ndt::NdtDerivatives derivatives;
+  const saw_ndt::internal::Evaluation evaluation = source.onFineLevel();
+  saw_ndt::internal::NdtDerivatives derivatives;
   for (auto _ : state) {
     derivatives = evaluation(saw_ndt::benchmarkPose());
     benchmark::DoNotOptimize(derivatives);

@@ -33,7 +33,7 @@ constexpr double kBytesAPair = 4.0 + 64.0;
 constexpr double kBytesAPoint = 13.0;
 
 constexpr std::size_t kGathered = 4096;
-constexpr double kLeastSeconds = 1e-3;
+constexpr double kMinSeconds = 1e-3;
 
 // Of every measurement.
 int repetitions = 50;
@@ -65,14 +65,15 @@ double secondsACall(int threads, const std::function<float(int thread)>& call) {
     return seconds;
   };
   int calls = 1;
-  while (secondsOfCalls(calls, 0) < kLeastSeconds && calls < (1 << 24)) calls *= 2;
+  while (secondsOfCalls(calls, 0) < kMinSeconds && calls < (1 << 24)) calls *= 2;
   std::vector<double> seconds;
   for (int i = 0; i < repetitions; ++i) {
     std::vector<double> of_thread(static_cast<std::size_t>(threads));
-    inThreads(threads, [&](int thread) { of_thread[static_cast<std::size_t>(thread)] = secondsOfCalls(calls, thread); });
-    seconds.push_back(saw_ndt::mean(of_thread) / calls);
+    inThreads(threads,
+              [&](int thread) { of_thread[static_cast<std::size_t>(thread)] = secondsOfCalls(calls, thread); });
+    seconds.push_back(saw_ndt::internal::mean(of_thread) / calls);
   }
-  return saw_ndt::median(seconds);
+  return saw_ndt::internal::median(seconds);
 }
 
 // Figures of the processor, in 1e9 a second over all threads.
@@ -140,9 +141,9 @@ struct Evaluation {
 Evaluation measureEvaluation(const saw_ndt::RegistrationCase& scan, int threads) {
   saw_ndt::AlignmentOptions options = scan.options;
   options.threads = threads;
-  saw_ndt::NdtEvaluation source;
+  saw_ndt::internal::NdtEvaluation source;
   source.begin(scan.target, scan.source, options);
-  const saw_ndt::Evaluation repeated = source.onFineLevel();
+  const saw_ndt::internal::Evaluation repeated = source.onFineLevel();
   Evaluation evaluation;
   evaluation.points = static_cast<double>(scan.source.size());
   const clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
@@ -156,7 +157,7 @@ Evaluation measureEvaluation(const saw_ndt::RegistrationCase& scan, int threads)
 }
 
 struct Configuration {
-  saw_ndt::InstructionSet set;
+  saw_ndt::internal::InstructionSet set;
   int threads;
   Processor processor;
 };
@@ -214,7 +215,7 @@ int main(int argc, char** argv) {
   return saw_ndt::runApp(argc, argv, app, [&] {
     if (repetitions < 1) throw saw_ndt::UsageError("option -repetitions: must be 1 or more");
     std::vector<Configuration> configurations;
-    for (const saw_ndt::InstructionSet set : saw_ndt::availableInstructionSets()) {
+    for (const saw_ndt::internal::InstructionSet set : saw_ndt::availableInstructionSets()) {
       for (const int threads : saw_ndt::benchmarkThreadCounts()) {
         const saw_ndt::InstructionSetLimit limit(set);
         configurations.push_back({set, threads, measureProcessor(threads)});

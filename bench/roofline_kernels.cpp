@@ -6,6 +6,8 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace saw_ndt {
+
+using namespace internal;
 namespace HWY_NAMESPACE {
 namespace {
 

@@ -35,10 +35,10 @@ void evaluate(benchmark::State& state, const saw_ndt::SourcePoints& source, std:
   const saw_ndt::NdtTarget& target = targetOf(map_voxels);
   const Eigen::Isometry3d T_map_source(Eigen::Translation3d(0.03, 0.02, 0.01));
   const saw_ndt::AlignmentOptions options = optionsFor(threads);
-  saw_ndt::NdtEvaluation ordered;
+  saw_ndt::internal::NdtEvaluation ordered;
   ordered.begin(target, source, options);
-  const saw_ndt::Evaluation evaluation = ordered.onFineLevel();
-  saw_ndt::NdtDerivatives derivatives;
+  const saw_ndt::internal::Evaluation evaluation = ordered.onFineLevel();
+  saw_ndt::internal::NdtDerivatives derivatives;
   for (auto _ : state) {
     derivatives = evaluation(T_map_source);
     benchmark::DoNotOptimize(derivatives);
@@ -63,7 +63,7 @@ using Benchmark = void (*)(benchmark::State&, const saw_ndt::SourcePoints&, std:
 
 // By one thread with the best instructions.
 void add(const std::string& stage_and_size, Benchmark run, Source make, std::size_t points, std::size_t map_voxels) {
-  const std::string name = stage_and_size + "/" + saw_ndt::toString(saw_ndt::instructionSet()) + "/threads:1";
+  const std::string name = stage_and_size + "/" + saw_ndt::toString(saw_ndt::internal::instructionSet()) + "/threads:1";
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { run(state, make(points), map_voxels, 1); });
 }
 

@@ -101,7 +101,9 @@ int main(int argc, char** argv) {
       for (const DriveFigures& drive : figures) {
         const auto values = drive.values.find(name);
         std::cout << " "
-                  << (values == drive.values.end() ? "" : judged(saw_ndt::median(values->second), *least, *greatest))
+                  << (values == drive.values.end()
+                          ? ""
+                          : judged(saw_ndt::internal::median(values->second), *least, *greatest))
                   << " |";
       }
       std::cout << "\n";

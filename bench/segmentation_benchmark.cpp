@@ -14,9 +14,9 @@ namespace {
 struct Stages {
   saw_ndt::SegmentationOptions options;
   saw_ndt::ScanView scan = saw_ndt::viewOf(saw_ndt::benchmarkScan());
-  saw_ndt::RangeImage image;
-  saw_ndt::GroundDetection ground_detection;
-  saw_ndt::ComponentFilter component_filter;
+  saw_ndt::internal::RangeImage image;
+  saw_ndt::internal::GroundDetection ground_detection;
+  saw_ndt::internal::ComponentFilter component_filter;
   std::vector<std::uint8_t> ground;
   std::vector<saw_ndt::StructuralLabel> labels;
 

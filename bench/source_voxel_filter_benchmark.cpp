@@ -19,9 +19,9 @@ void filterSource(benchmark::State& state, const saw_ndt::LocalizationMethod& me
   const saw_ndt::ScanView scan = saw_ndt::viewOf(saw_ndt::benchmarkScan());
   std::vector<saw_ndt::StructuralLabel> labels;
   if (method.segment) saw_ndt::ScanSegmenter().segment(scan, labels);
-  saw_ndt::SourceVoxelFilter filter(voxelSize());
-  const saw_ndt::SourceSelection selection = {method.ground_ratio, method.voxels.confidence,
-                                              Eigen::Isometry3d::Identity()};
+  saw_ndt::internal::SourceVoxelFilter filter(voxelSize());
+  const saw_ndt::internal::SourceSelection selection = {method.ground_ratio, method.voxels.confidence,
+                                                        Eigen::Isometry3d::Identity()};
   std::size_t centroids = 0;
   for (auto _ : state) centroids = filter.filter(scan, method.segment ? &labels : nullptr, selection).size();
   state.counters["centroids"] = static_cast<double>(centroids);

@@ -57,9 +57,9 @@ NdtTarget cityTarget(std::size_t voxel_count) {
     if (entries.size() < voxel_count) entries.push_back({{x, y, z}, label, squares[across]});
   };
   const auto addColumn = [&](int x, int y) {
-    add(x, y, 0, StructuralLabel::Ground, 2);
+    add(x, y, 0, StructuralLabel::GROUND, 2);
     if (!inWall(x) && !inWall(y)) return;
-    for (int z = 1; z <= kWallHeight; ++z) add(x, y, z, StructuralLabel::NonGround, inWall(x) ? 0 : 1);
+    for (int z = 1; z <= kWallHeight; ++z) add(x, y, z, StructuralLabel::NON_GROUND, inWall(x) ? 0 : 1);
   };
   addColumn(0, 0);
   // Square rings of columns around the middle.
@@ -94,7 +94,7 @@ SourcePoints cityScan(std::size_t point_count) {
     const Eigen::Vector3d ray(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
                               std::sin(elevation));
     double range = 1e3;
-    StructuralLabel label = StructuralLabel::NonGround;
+    StructuralLabel label = StructuralLabel::NON_GROUND;
     for (const double wall : kWalls_m) {
       for (const int axis : {0, 1}) {
         const double to_wall = (wall - sensor[axis]) / ray[axis];
@@ -104,7 +104,7 @@ SourcePoints cityScan(std::size_t point_count) {
     const double to_ground = (kGround_m - sensor.z()) / ray.z();
     if (to_ground > 0.0 && to_ground < range) {
       range = to_ground;
-      label = StructuralLabel::Ground;
+      label = StructuralLabel::GROUND;
     }
     const Eigen::Vector3f point = (sensor + range * ray).cast<float>();
     source.add(point.x() + noise(), point.y() + noise(), point.z() + noise(), label);
@@ -121,7 +121,7 @@ SourcePoints cityPatch(std::size_t point_count) {
   Noise noise;
   for (std::size_t i = 0; i < point_count; ++i) {
     const float x = within(random), y = within(random);
-    source.add(x, y, static_cast<float>(kGround_m) + noise(), StructuralLabel::Ground);
+    source.add(x, y, static_cast<float>(kGround_m) + noise(), StructuralLabel::GROUND);
   }
   return source;
 }

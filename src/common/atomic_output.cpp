@@ -11,7 +11,7 @@
 
 #include "saw_ndt/common/error.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 namespace fs = std::filesystem;
 
@@ -89,4 +89,4 @@ void AtomicOutput::commit() {
   temporary_.clear();
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -6,7 +6,7 @@
 
 #include "saw_ndt/common/export.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// A file that appears under its name only when it is whole: it is written beside the target and renamed by commit().
 /// Without commit() the target stays as it was and nothing is left behind.
@@ -36,4 +36,4 @@ class SAW_NDT_EXPORT AtomicOutput {
   std::ostream stream_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

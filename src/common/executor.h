@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "saw_ndt/common/export.h"
 #include "common/chunk_body.h"
+#include "saw_ndt/common/export.h"
 
 namespace saw_ndt::internal {
 

@@ -5,7 +5,7 @@
 
 #include "saw_ndt/common/error.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 std::ifstream openInputFile(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -16,4 +16,4 @@ std::ifstream openInputFile(const std::filesystem::path& path) {
   return stream;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

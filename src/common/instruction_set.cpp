@@ -9,7 +9,7 @@
 #include "common/instruction_set_limit.h"
 #include "hwy/highway.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 // Highway's targets beyond a set.
@@ -93,4 +93,4 @@ InstructionSet instructionSetNamed(const std::string& name) {
   throw std::invalid_argument("instruction set " + name + ": must be one of baseline sse4 avx2 avx512");
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

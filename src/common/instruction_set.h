@@ -5,7 +5,7 @@
 
 #include "saw_ndt/common/export.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// The vector instructions that the inner loops are compiled for, each set holding those before it.
 enum class InstructionSet {
@@ -34,4 +34,4 @@ SAW_NDT_EXPORT const char* toString(InstructionSet set);
 /// The inverse of toString(). @throws std::invalid_argument that lists the names, for another one
 SAW_NDT_EXPORT InstructionSet instructionSetNamed(const std::string& name);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -6,13 +6,13 @@
 //   #include "common/vector_dispatch.h"
 //
 //   HWY_BEFORE_NAMESPACE();
-//   namespace saw_ndt { namespace HWY_NAMESPACE { namespace {
+//   namespace saw_ndt::internal { namespace HWY_NAMESPACE { namespace {
 //   ... what is compiled for each instruction set, in terms of Highway or as plain loops over arrays ...
 //   } } }
 //   HWY_AFTER_NAMESPACE();
 //
 //   #if HWY_ONCE
-//   namespace saw_ndt {
+//   namespace saw_ndt::internal {
 //   HWY_EXPORT(loop);
 //   ... the rest, which calls SAW_NDT_DISPATCH(loop)(arguments) ...
 //   }
@@ -29,4 +29,4 @@
 
 #undef SAW_NDT_DISPATCH
 /// The version of an exported function for the instruction set in use.
-#define SAW_NDT_DISPATCH(function) (::saw_ndt::obeyInstructionSetLimit(), HWY_DYNAMIC_DISPATCH(function))
+#define SAW_NDT_DISPATCH(function) (::saw_ndt::internal::obeyInstructionSetLimit(), HWY_DYNAMIC_DISPATCH(function))

@@ -7,6 +7,8 @@
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 /// Hands the scans of a source to several threads, until one of them fails.

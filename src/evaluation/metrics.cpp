@@ -8,6 +8,8 @@
 
 namespace saw_ndt {
 
+using namespace internal;
+
 PoseError poseError(const Eigen::Isometry3d& T_map_reference, const Eigen::Isometry3d& T_map_estimate) {
   return {(T_map_estimate.translation() - T_map_reference.translation()).norm(),
           degreesFromRadians(std::abs(wrappedAngle(heading(T_map_estimate) - heading(T_map_reference))))};

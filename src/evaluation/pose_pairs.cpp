@@ -1,11 +1,10 @@
-#include "saw_ndt/evaluation/pose_pairs.h"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/evaluation/metrics.h"
 
 namespace saw_ndt {
 

@@ -7,7 +7,7 @@
 
 #include "saw_ndt/common/error.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 namespace {
 
@@ -39,4 +39,4 @@ DurationStatistics durationStatistics(const std::vector<double>& durations) {
           *std::max_element(durations.begin(), durations.end())};
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -4,7 +4,7 @@
 
 #include "saw_ndt/common/export.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 // All of these throw std::invalid_argument for no values.
 
@@ -27,4 +27,4 @@ struct DurationStatistics {
 
 SAW_NDT_EXPORT DurationStatistics durationStatistics(const std::vector<double>& durations);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -7,7 +7,7 @@
 #include "common/input_file.h"
 #include "saw_ndt/common/error.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 namespace {
 constexpr std::string_view kBlanks = " \t\r\f\v";
@@ -53,4 +53,4 @@ std::vector<NumberLine> readNumberLines(const std::filesystem::path& path) {
   return lines;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

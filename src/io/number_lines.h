@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// A line of a text file and its number, from 1.
 struct TextLine {
@@ -32,4 +32,4 @@ std::vector<double> parseNumbers(const std::filesystem::path& path, std::size_t 
 /// readTextLines() and parseNumbers() in one.
 std::vector<NumberLine> readNumberLines(const std::filesystem::path& path);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -7,7 +7,7 @@
 #include "io/number_lines.h"
 #include "saw_ndt/common/error.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 namespace {
 
@@ -121,4 +121,4 @@ class HeaderReader {
 
 PcdHeader readPcdHeader(const std::filesystem::path& path) { return HeaderReader(path).read(); }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

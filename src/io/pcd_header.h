@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// A field of a PCD file: `count` values of `size` bytes and type 'F', 'U' or 'I'.
 struct PcdField {
@@ -25,4 +25,4 @@ struct PcdHeader {
 /// before memory is taken for it. Throws Error that names the line or the offset.
 PcdHeader readPcdHeader(const std::filesystem::path& path);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -16,6 +16,8 @@
 
 namespace saw_ndt {
 
+using namespace internal;
+
 namespace {
 
 /// Keeps PCL from printing what an Error says already.

@@ -10,7 +10,7 @@
 
 #include "saw_ndt/common/error.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 namespace fs = std::filesystem;
 
@@ -49,4 +49,4 @@ void StagedOutput::commit() const {
   }
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

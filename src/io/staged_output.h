@@ -4,7 +4,7 @@
 
 #include "saw_ndt/common/export.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Files that appear in a folder all together: they are written into a folder within it, in folders of their own as
 /// they need, and moved by commit(). Without commit() the target stays as it was and nothing is left behind.
@@ -28,4 +28,4 @@ class SAW_NDT_EXPORT StagedOutput {
   std::filesystem::path target_, folder_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

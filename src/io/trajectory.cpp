@@ -12,6 +12,8 @@
 
 namespace saw_ndt {
 
+using namespace internal;
+
 namespace {
 
 constexpr std::size_t kTumColumns = 8;
@@ -59,6 +61,8 @@ std::vector<Eigen::Isometry3d> kittiPoses(const std::filesystem::path& path, con
 
 }  // namespace
 
+namespace internal {
+
 Eigen::Isometry3d rigidTransform(const std::filesystem::path& path, std::size_t line,
                                  const std::vector<double>& values) {
   requireColumns(path, {line, values}, kKittiColumns);
@@ -72,15 +76,17 @@ Eigen::Isometry3d rigidTransform(const std::filesystem::path& path, std::size_t 
   return normalizedRotation(T);
 }
 
+}  // namespace internal
+
 Trajectory readTrajectory(const std::filesystem::path& path) {
   const std::vector<NumberLine> lines = readPoseLines(path);
   const std::size_t columns = lines.front().values.size();
-  if (columns == kTumColumns) return {TrajectoryFormat::Tum, tumPoses(path, lines)};
+  if (columns == kTumColumns) return {TrajectoryFormat::TUM, tumPoses(path, lines)};
   if (columns != kKittiColumns) {
     throw Error(path.string(), linePlace(lines.front().number),
                 std::to_string(columns) + " numbers, where 8 (TUM) or 12 (KITTI) are needed");
   }
-  Trajectory trajectory{TrajectoryFormat::Kitti, {}};
+  Trajectory trajectory{TrajectoryFormat::KITTI, {}};
   for (const Eigen::Isometry3d& T : kittiPoses(path, lines)) {
     trajectory.poses.push_back({static_cast<double>(trajectory.poses.size()) * kNominalScanPeriod_s, T});
   }

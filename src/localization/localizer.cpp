@@ -8,6 +8,8 @@
 #include "common/stopwatch.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 Matrix6d inverseOrZero(const Matrix6d& information) {

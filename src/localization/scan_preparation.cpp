@@ -3,13 +3,15 @@
 #include <cmath>
 #include <vector>
 
-#include "common/stopwatch.h"
 #include "common/executor.h"
+#include "common/stopwatch.h"
 #include "localization/source_voxel_filter.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 
 void ScanPreparationOptions::check() const {
   segmentation.check();

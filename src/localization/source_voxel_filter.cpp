@@ -8,13 +8,13 @@
 #include "localization/source_voxel_loops.h"
 #include "saw_ndt/common/error.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 constexpr std::size_t kBlock = SourceVoxelBlock::kSize;
 // The hardware follows the stream of points to the end of a page alone.
 constexpr std::size_t kPointsAhead = 96;
-constexpr int kLeastSlotBits = 17;
+constexpr int kMinSlotBits = 17;
 constexpr std::uint64_t kHashFactor = 0x9E3779B97F4A7C15ULL;
 
 RigidTransformRows rowsOf(const Eigen::Isometry3f& transform) {
@@ -29,7 +29,7 @@ SourceVoxelFilter::SourceVoxelFilter(double voxel_size_m)
     : voxel_size_m_(voxel_size_m), block_(std::make_unique<SourceVoxelBlock>()) {
   checkOption(voxel_size_m >= 0.0 && std::isfinite(voxel_size_m), "source_voxel_size_m", voxel_size_m, "0 or more");
   inverse_size_ = voxel_size_m > 0.0 ? static_cast<float>(1.0 / voxel_size_m) : 0.0F;
-  hash_shift_ = 64 - kLeastSlotBits + 1;
+  hash_shift_ = 64 - kMinSlotBits + 1;
   if (voxel_size_m > 0.0) growTable();
 }
 
@@ -81,9 +81,9 @@ std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, s
   };
   const std::size_t size = end - begin;
   if (labels == nullptr) {
-    if (!takes_label_[static_cast<std::size_t>(StructuralLabel::NonGround)]) return 0;
+    if (!takes_label_[static_cast<std::size_t>(StructuralLabel::NON_GROUND)]) return 0;
     for (std::size_t i = 0; i < size; ++i) read(i, i);
-    std::fill_n(block.label, size, static_cast<std::uint8_t>(StructuralLabel::NonGround));
+    std::fill_n(block.label, size, static_cast<std::uint8_t>(StructuralLabel::NON_GROUND));
     return size;
   }
   // Which points are taken changes too often to be a branch: one that is not is overwritten by the next.
@@ -96,7 +96,7 @@ std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, s
     const bool takes = takes_label[static_cast<std::size_t>(label)];
     taken[count] = static_cast<std::uint16_t>(i);
     block.label[count] = static_cast<std::uint8_t>(label);
-    const bool sampled = sampler.keepsNext(takes & (label == StructuralLabel::Ground));
+    const bool sampled = sampler.keepsNext(takes & (label == StructuralLabel::GROUND));
     count += static_cast<std::size_t>(takes & sampled);
   }
   ground_sampler = sampler;
@@ -197,4 +197,4 @@ void SourceVoxelFilter::finishVoxels() {
                 points_.y.data(), points_.z.data(), points_.label.data());
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

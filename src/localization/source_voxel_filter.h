@@ -12,7 +12,7 @@
 #include "saw_ndt/registration/source_points.h"
 #include "saw_ndt/segmentation/ground_sampler.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 struct SourceVoxelBlock;
 
@@ -67,4 +67,4 @@ class SourceVoxelFilter {
   SourcePoints points_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -5,7 +5,7 @@
 #include "common/vector_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -94,11 +94,11 @@ void findBlockCentroids(std::size_t count, float size, const std::uint64_t* __re
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 HWY_EXPORT(transformBlock);
 HWY_EXPORT(findBlockVoxels);
@@ -123,5 +123,5 @@ void findCentroids(std::size_t count, float voxel_size_m, const std::uint64_t* k
   SAW_NDT_DISPATCH(findBlockCentroids)(count, voxel_size_m, key, offset_sums, x, y, z, label);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 #endif

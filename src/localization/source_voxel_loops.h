@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Points and what is known of their voxels, one array a coordinate.
 struct SourceVoxelBlock {
@@ -47,4 +47,4 @@ void addOffsets(std::size_t count, const float* offset, const std::uint16_t* ord
 void findCentroids(std::size_t count, float voxel_size_m, const std::uint64_t* key, const float* offset_sums, float* x,
                    float* y, float* z, std::uint8_t* label);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -10,6 +10,8 @@
 #include "map/sums_statistics.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using internal::CoarseSums;
@@ -45,10 +47,9 @@ void derive(MapFileReader& reader, const MapPiece& piece, const VoxelWeighting& 
     reader.decode(piece.parts[i], entries);
     const LabelledVoxelSums* const first = entries.data();
     const LabelledVoxelSums* const last = first + entries.size();
-    internal::forEachStatistics(first, last, weighting, metresPerStep(reader.origin()),
-                                [&part](const std::vector<VoxelStatistics>& statistics) {
-                                  part.cells.add(statistics, CellPrecision::SINGLE);
-                                });
+    internal::forEachStatistics(
+        first, last, weighting, metresPerStep(reader.origin()),
+        [&part](const std::vector<VoxelStatistics>& statistics) { part.cells.add(statistics, CellPrecision::SINGLE); });
     if (weighting.coarse_factor > 1) part.coarse.add(first, last);
   });
 }

@@ -65,9 +65,9 @@ void forEachPartOfVoxels(const std::vector<LabelledVoxelSums>& entries, int thre
                          const std::function<void(std::size_t part_count)>& prepare,
                          const std::function<void(std::size_t part, const LabelledVoxelSums* first,
                                                   const LabelledVoxelSums* last)>& process) {
-  constexpr std::size_t kLeastPerThread = 1000;
+  constexpr std::size_t kMinPerThread = 1000;
   const std::size_t part_count =
-      std::clamp<std::size_t>(entries.size() / kLeastPerThread, 1, static_cast<std::size_t>(threadCount(threads)));
+      std::clamp<std::size_t>(entries.size() / kMinPerThread, 1, static_cast<std::size_t>(threadCount(threads)));
   prepare(part_count);
   const auto startOf = [&](std::size_t part) {
     std::size_t i = entries.size() * part / part_count;

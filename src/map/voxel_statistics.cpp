@@ -78,8 +78,8 @@ StructureClass structureClass(const Eigen::Vector3d& eigenvalues) {
   const double linear = sigma[2] - sigma[1];
   const double planar = sigma[1] - sigma[0];
   const double volumetric = sigma[0];
-  if (linear >= planar && linear >= volumetric) return StructureClass::Linear;
-  return planar >= volumetric ? StructureClass::Planar : StructureClass::Volumetric;
+  if (linear >= planar && linear >= volumetric) return StructureClass::LINEAR;
+  return planar >= volumetric ? StructureClass::PLANAR : StructureClass::VOLUMETRIC;
 }
 
 void internal::appendVoxelStatistics(const MergedVoxel* voxels, std::size_t count, const VoxelWeighting& weighting,

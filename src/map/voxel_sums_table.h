@@ -20,7 +20,7 @@ inline std::uint64_t hashCoordinate(const Eigen::Vector3i& c) {
 /// too, so that looking for one entry rarely touches another.
 class VoxelSumsTable {
  public:
-  VoxelSumsTable() : slots_(kLeastSlots) {}
+  VoxelSumsTable() : slots_(kMinSlots) {}
 
   /// The place in entries() of `label` in `voxel`, made empty where there is none yet.
   std::size_t placeOf(const VoxelCoordinate& voxel, StructuralLabel label) {
@@ -50,12 +50,12 @@ class VoxelSumsTable {
   const std::vector<LabelledVoxelSums>& entries() const { return entries_; }
   /// The same, moved out. The table is empty afterwards.
   std::vector<LabelledVoxelSums> takeEntries() {
-    slots_ = std::vector<Slot>(kLeastSlots);
+    slots_ = std::vector<Slot>(kMinSlots);
     return std::exchange(entries_, {});
   }
 
  private:
-  static constexpr std::size_t kLeastSlots = 1024;  // a power of two
+  static constexpr std::size_t kMinSlots = 1024;  // a power of two
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 
   struct Slot {

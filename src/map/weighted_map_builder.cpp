@@ -18,7 +18,7 @@ namespace {
 using namespace internal;
 
 // Fewer points are not worth another thread's table.
-constexpr std::size_t kLeastPointsPerThread = 20000;
+constexpr std::size_t kMinPointsPerThread = 20000;
 
 PointPlacement placementOf(const Eigen::Isometry3d& T_map_points, double resolution_m) {
   PointPlacement placement;
@@ -40,7 +40,7 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
     block->xyz = points.point(i);
     block->size = std::min(last - i, PointBlock::kMostPoints);
     if (!labels.known()) {
-      std::fill_n(block->label, block->size, static_cast<std::int32_t>(StructuralLabel::NonGround));
+      std::fill_n(block->label, block->size, static_cast<std::int32_t>(StructuralLabel::NON_GROUND));
     } else {
       for (std::size_t k = 0; k < block->size; ++k) {
         block->label[k] = labels.first[(i + k) * labels.stride];
@@ -113,7 +113,7 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
   requireKind(labels.known());
   ++origin_.scan_count;
   const PointPlacement placement = placementOf(T_map_scan, origin_.resolution_m);
-  const std::size_t most_parts = std::max<std::size_t>(1, points.size / kLeastPointsPerThread);
+  const std::size_t most_parts = std::max<std::size_t>(1, points.size / kMinPointsPerThread);
   const int part_count =
       static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(internal::threadCount(threads)), most_parts));
   if (part_count == 1) {

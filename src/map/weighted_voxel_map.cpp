@@ -13,6 +13,8 @@
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 double metresPerStep(const MapOrigin& origin) { return origin.resolution_m / kStepsPerVoxel; }
@@ -72,8 +74,8 @@ std::optional<VoxelStatistics> WeightedVoxelMap::find(const Eigen::Vector3d& pos
   weighting.check();
   QuantizedPosition position;
   if (!quantize(position_m, 1.0 / resolution(), position)) return std::nullopt;
-  const LabelledVoxelSums least{position.voxel, StructuralLabel::Noise, {}};
-  static_assert(static_cast<int>(StructuralLabel::Noise) == 0, "the first label of a voxel");
+  const LabelledVoxelSums least{position.voxel, StructuralLabel::NOISE, {}};
+  static_assert(static_cast<int>(StructuralLabel::NOISE) == 0, "the first label of a voxel");
   const auto first = std::lower_bound(entries_.begin(), entries_.end(), least, internal::inMapOrder);
   const auto last = std::find_if(first, entries_.end(),
                                  [&](const LabelledVoxelSums& entry) { return entry.voxel != position.voxel; });

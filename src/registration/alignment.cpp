@@ -15,8 +15,8 @@ void AlignmentOptions::check() const {
   checkOption(positive(translation_epsilon_m), "translation_epsilon_m", translation_epsilon_m, "positive");
   checkOption(positive(rotation_epsilon_rad), "rotation_epsilon_rad", rotation_epsilon_rad, "positive");
   checkOption(positive(max_step_m), "max_step_m", max_step_m, "positive");
-  checkOption(least_curvature_share > 0.0 && least_curvature_share <= 1.0, "least_curvature_share",
-              least_curvature_share, "above 0 and at most 1");
+  checkOption(min_curvature_share > 0.0 && min_curvature_share <= 1.0, "min_curvature_share", min_curvature_share,
+              "above 0 and at most 1");
   checkOption(coarse_max_iterations >= 1, "coarse_max_iterations", coarse_max_iterations, "1 or more");
   checkOption(coarse_stride >= 1, "coarse_stride", coarse_stride, "1 or more");
   checkOption(positive(coarse_settled_voxels), "coarse_settled_voxels", coarse_settled_voxels, "positive");

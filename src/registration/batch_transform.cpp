@@ -5,7 +5,7 @@
 #include "common/vector_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -90,11 +90,11 @@ void columnsOf(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, std::si
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 HWY_EXPORT(columnsOf);
 HWY_EXPORT(transform);
@@ -108,5 +108,5 @@ void findColumns(const float* x, const float* y, std::size_t count, float invers
   SAW_NDT_DISPATCH(columnsOf)(x, y, count, inverse_column_m, columns);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 #endif

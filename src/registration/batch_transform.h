@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 // Points on their way into the voxels of a map, batch by batch. Loops are compiled for each instruction set.
 
@@ -40,4 +40,4 @@ void findColumns(const float* x, const float* y, std::size_t count, float invers
 void transformBatch(const float* x, const float* y, const float* z, std::size_t count, const BatchPose& pose,
                     BatchPoints& points);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 // Neighbours that have the same y and z, in the order of their places in a row.
@@ -46,19 +46,26 @@ BatchVoxelFinder::BatchVoxelFinder(const internal::NdtLevel& level, Neighborhood
   pose_ = anchored.pose;
 }
 
-void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_t count,
-                            BatchScratch& scratch) const {
-  BatchPoints& points = scratch.points;
-  const auto transform = [&] {
-    transformBatch(source.x() + first, source.y() + first, source.z() + first, count, pose_, points);
-  };
-  transform();
-  if (source.mixedUp(first, points.run_count)) {
-    source.regroup(first, points);
-    transform();
+void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const {
+  move(source, first, count, scratch);
+  if (source.mixedUp(first, scratch.points.run_count)) {
+    source.regroup(first, scratch.points);
+    move(source, first, count, scratch);
   }
   findVoxels(scratch);
   cutIntoUnits(scratch);
+}
+
+void BatchVoxelFinder::findInOrder(const OrderedSource& source, std::size_t first, std::size_t count,
+                                   BatchScratch& scratch) const {
+  move(source, first, count, scratch);
+  findVoxels(scratch);
+  cutIntoUnits(scratch);
+}
+
+void BatchVoxelFinder::move(const OrderedSource& source, std::size_t first, std::size_t count,
+                            BatchScratch& scratch) const {
+  transformBatch(source.x() + first, source.y() + first, source.z() + first, count, pose_, scratch.points);
 }
 
 void BatchVoxelFinder::findVoxels(BatchScratch& scratch) const {
@@ -159,4 +166,4 @@ void BatchVoxelFinder::cutIntoUnits(BatchScratch& scratch) const {
   }
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -7,7 +7,7 @@
 #include "registration/ordered_source.h"
 #include "registration/voxel_pairs.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Scratch memory of one thread.
 struct BatchScratch {
@@ -33,8 +33,11 @@ class BatchVoxelFinder {
   /// Fills the scratch memory from `count` points of the source, at most kPointsPerBatch.
   /// Puts them in a better order first where runs are short.
   void find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const;
+  /// The same for points in the order that they have.
+  void findInOrder(const OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const;
 
  private:
+  void move(const OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const;
   void findVoxels(BatchScratch& scratch) const;
   template <typename NeighbourRows>
   void findVoxelsIn(const NeighbourRows& neighbour_rows, BatchScratch& scratch) const;
@@ -55,4 +58,4 @@ struct AnchoredPose {
   BatchPose pose;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -2,7 +2,7 @@
 
 #include "registration/batch_voxel_finder.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 BatchWorkspace::BatchWorkspace() = default;
 BatchWorkspace::~BatchWorkspace() = default;
@@ -15,4 +15,4 @@ void BatchWorkspace::prepare(int threads) {
   }
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 struct BatchScratch;
 struct BatchTotals;
@@ -26,4 +26,4 @@ struct BatchWorkspace {
   std::vector<LikelihoodSums> batch_likelihoods;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -5,7 +5,7 @@
 
 #include "registration/optimizers.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 // Added to the diagonal of the curvature, as a share of its mean over translation and over rotation: directions that
@@ -25,12 +25,12 @@ Matrix6d ridged(const Matrix6d& curvature) {
   return result;
 }
 
-Vector6d newtonStep(const NdtDerivatives& at, double least_curvature_share) {
+Vector6d newtonStep(const NdtDerivatives& at, double min_curvature_share) {
   const Eigen::LLT<Matrix6d> cholesky(ridged(at.curvature));
   const auto L = cholesky.matrixL();
   const Matrix6d half_whitened = L.solve(at.radial_curvature);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.solve(half_whitened.transpose()));
-  const Vector6d share = (1.0 - solver.eigenvalues().array()).max(least_curvature_share).matrix();
+  const Vector6d share = (1.0 - solver.eigenvalues().array()).max(min_curvature_share).matrix();
   const Vector6d whitened_gradient = solver.eigenvectors().transpose() * Vector6d(L.solve(at.gradient()));
   const Vector6d whitened_step = solver.eigenvectors() * whitened_gradient.cwiseQuotient(share);
   return cholesky.matrixU().solve(whitened_step);
@@ -45,7 +45,7 @@ Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6d& step) {
 
 }  // namespace
 
-void dampedNewton(const Evaluation& evaluate, const StepLimits& limits, double least_curvature_share,
+void dampedNewton(const Evaluation& evaluate, const StepLimits& limits, double min_curvature_share,
                   AlignmentResult& result) {
   Eigen::Isometry3d best = result.T_map_source;
   NdtDerivatives at_best = evaluate(best);
@@ -62,7 +62,7 @@ void dampedNewton(const Evaluation& evaluate, const StepLimits& limits, double l
             step.tail<3>().norm() < limits.rotation_epsilon_rad) ||
            at_best.gradient().dot(step) < kNegligibleGain * at_best.score;
   };
-  Vector6d step = newtonStep(at_best, least_curvature_share);
+  Vector6d step = newtonStep(at_best, min_curvature_share);
   for (int iteration = 0; iteration < limits.max_iterations; ++iteration) {
     if (!step.allFinite()) return finish(AlignmentStatus::NO_OVERLAP);
     const double length = step.head<3>().norm();
@@ -79,7 +79,7 @@ void dampedNewton(const Evaluation& evaluate, const StepLimits& limits, double l
     if (at_trial.score > at_best.score) {
       best = trial;
       at_best = at_trial;
-      step = newtonStep(at_best, least_curvature_share);
+      step = newtonStep(at_best, min_curvature_share);
     } else {
       step *= 0.5;
     }
@@ -88,4 +88,4 @@ void dampedNewton(const Evaluation& evaluate, const StepLimits& limits, double l
   finish(AlignmentStatus::ITERATION_LIMIT);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -6,8 +6,10 @@
 #include "registration/batch_voxel_finder.h"
 #include "registration/pair_parameters.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
+
+constexpr NeighborhoodSearchMethod kNeighbours = NeighborhoodSearchMethod::DIRECT7;
 
 std::size_t matchedPoints(const BatchScratch& scratch) {
   std::size_t count = 0;
@@ -17,41 +19,64 @@ std::size_t matchedPoints(const BatchScratch& scratch) {
 
 double ratio(double sum, std::size_t count) { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
 
+PairParameters parametersOf(const NdtLevel& level, double outlier_ratio) {
+  return pairParameters(level, kNeighbours,
+                        scoreParameters(ScoreFunction::MAGNUSSON, outlier_ratio, level.resolution()), {});
+}
+
+// Of the batch that begins at point `first`, whose voxels have been found.
+LikelihoodSums sumsOfBatch(const OrderedSource& source, std::size_t first, const BatchScratch& scratch,
+                           const PairParameters& parameters) {
+  return {evaluateScores(scratch.points, source.nonGround() + first, scratch.units, scratch.voxels, parameters),
+          matchedPoints(scratch)};
+}
+
+void add(const LikelihoodSums& batch, LikelihoodSums& total) {
+  total.scores.all += batch.scores.all;
+  total.scores.non_ground += batch.scores.non_ground;
+  total.scores.best += batch.scores.best;
+  total.matched_points += batch.matched_points;
+}
+
+Likelihoods likelihoodsOf(const LikelihoodSums& total, const OrderedSource& source) {
+  return {ratio(total.scores.all, source.size()), ratio(total.scores.non_ground, source.nonGroundCount()),
+          ratio(total.scores.best, total.matched_points)};
+}
+
 }  // namespace
 
-Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, OrderedSource& source,
-                                const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads,
-                                BatchWorkspace& workspace) {
-  Likelihoods likelihoods;
-  if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return likelihoods;
-  const PairParameters parameters =
-      pairParameters(level, NeighborhoodSearchMethod::DIRECT7,
-                     scoreParameters(ScoreFunction::Magnusson, outlier_ratio, level.resolution()), {});
-  const BatchVoxelFinder finder(level, NeighborhoodSearchMethod::DIRECT7, T_map_source);
+Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
+                                double outlier_ratio, int threads, BatchWorkspace& workspace) {
+  if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return {};
+  const PairParameters parameters = parametersOf(level, outlier_ratio);
+  const BatchVoxelFinder finder(level, kNeighbours, T_map_source);
   workspace.prepare(threads);
   workspace.batch_likelihoods.resize((source.size() + kPointsPerBatch - 1) / kPointsPerBatch);
-  internal::forEachChunk(threads, workspace.batch_likelihoods.size(), [&](std::size_t batch, int worker) {
+  forEachChunk(threads, workspace.batch_likelihoods.size(), [&](std::size_t batch, int worker) {
     BatchScratch& scratch = *workspace.scratch_of_worker[static_cast<std::size_t>(worker)];
     const std::size_t first = batch * kPointsPerBatch;
     finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
-    workspace.batch_likelihoods[batch] = {
-        evaluateScores(scratch.points, source.nonGround() + first, scratch.units, scratch.voxels, parameters),
-        matchedPoints(scratch)};
+    workspace.batch_likelihoods[batch] = sumsOfBatch(source, first, scratch, parameters);
   });
   LikelihoodSums total;
-  for (const LikelihoodSums& sums : workspace.batch_likelihoods) {
-    total.scores.all += sums.scores.all;
-    total.scores.non_ground += sums.scores.non_ground;
-    total.scores.best += sums.scores.best;
-    total.matched_points += sums.matched_points;
-  }
-  likelihoods.unweighted = ratio(total.scores.all, source.size());
-  likelihoods.non_ground = ratio(total.scores.non_ground, source.nonGroundCount());
-  likelihoods.nearest_voxel = ratio(total.scores.best, total.matched_points);
-  return likelihoods;
+  for (const LikelihoodSums& batch : workspace.batch_likelihoods) add(batch, total);
+  return likelihoodsOf(total, source);
 }
 
-Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, const SourcePoints& source,
+Likelihoods likelihoodsInOrder(const NdtLevel& level, const OrderedSource& source,
+                               const Eigen::Isometry3d& T_map_source, double outlier_ratio, BatchScratch& scratch) {
+  if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return {};
+  const PairParameters parameters = parametersOf(level, outlier_ratio);
+  const BatchVoxelFinder finder(level, kNeighbours, T_map_source);
+  LikelihoodSums total;
+  for (std::size_t first = 0; first < source.size(); first += kPointsPerBatch) {
+    finder.findInOrder(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
+    add(sumsOfBatch(source, first, scratch, parameters), total);
+  }
+  return likelihoodsOf(total, source);
+}
+
+Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& source,
                                 const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads) {
   if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return {};
   OrderedSource ordered;
@@ -60,4 +85,4 @@ Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, const SourcePoi
   return evaluateLikelihoods(level, ordered, T_map_source, outlier_ratio, threads, workspace);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

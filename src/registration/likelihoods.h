@@ -5,17 +5,22 @@
 #include "map/ndt_level.h"
 #include "registration/batch_workspace.h"
 #include "registration/ordered_source.h"
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/registration/alignment.h"
 #include "saw_ndt/registration/source_points.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// In single precision; the same bits for any number of threads.
-Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, OrderedSource& source,
-                                const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads,
-                                BatchWorkspace& workspace);
+SAW_NDT_EXPORT Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source,
+                                               const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads,
+                                               BatchWorkspace& workspace);
+/// The same in one thread, and without putting points in an order that suits the pose.
+Likelihoods likelihoodsInOrder(const NdtLevel& level, const OrderedSource& source,
+                               const Eigen::Isometry3d& T_map_source, double outlier_ratio, BatchScratch& scratch);
 /// The same for points in any order.
-Likelihoods evaluateLikelihoods(const internal::NdtLevel& level, const SourcePoints& source,
-                                const Eigen::Isometry3d& T_map_source, double outlier_ratio, int threads);
+SAW_NDT_EXPORT Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& source,
+                                               const Eigen::Isometry3d& T_map_source, double outlier_ratio,
+                                               int threads);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
@@ -109,4 +109,4 @@ double moreThuenteStep(const std::function<ValueAndSlope(double)>& function, con
   return step;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// A function of one variable and its slope.
 struct ValueAndSlope {
@@ -19,4 +19,4 @@ struct ValueAndSlope {
 double moreThuenteStep(const std::function<ValueAndSlope(double)>& function, const ValueAndSlope& at_zero,
                        double first_step, double min_step, double max_step, int max_trials = 10);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

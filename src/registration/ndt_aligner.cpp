@@ -9,6 +9,8 @@
 
 namespace saw_ndt {
 
+using namespace internal;
+
 struct NdtAligner::Scratch {
   NdtEvaluation evaluation;
 };
@@ -18,8 +20,8 @@ NdtAligner::~NdtAligner() = default;
 NdtAligner::NdtAligner(const NdtAligner&) : NdtAligner() {}
 NdtAligner& NdtAligner::operator=(const NdtAligner&) { return *this; }
 
-AlignmentResult NdtAligner::align(const NdtTarget& target, const SourcePoints& source,
-                                  const Eigen::Isometry3d& guess, const AlignmentOptions& options) {
+AlignmentResult NdtAligner::align(const NdtTarget& target, const SourcePoints& source, const Eigen::Isometry3d& guess,
+                                  const AlignmentOptions& options) {
   options.check();
   if (!guess.matrix().allFinite()) throw std::invalid_argument("the initial guess is not finite");
   AlignmentResult result;
@@ -39,14 +41,14 @@ AlignmentResult NdtAligner::align(const NdtTarget& target, const SourcePoints& s
     coarse_limits.translation_epsilon_m = options.coarse_settled_voxels * resolution_m;
     coarse_limits.rotation_epsilon_rad = 1.0;
     coarse_limits.max_step_m = options.max_step_m * target.coarse().resolution();
-    dampedNewton(evaluation.onCoarseLevel(), coarse_limits, options.least_curvature_share, result);
+    dampedNewton(evaluation.onCoarseLevel(), coarse_limits, options.min_curvature_share, result);
     // A first step that is already small says that the guess is good; the coarse optimum is no better than it.
     if (result.evaluations == 1) result.T_map_source = guess;
     result.iterations = 0;
   }
 
   if (options.optimizer == Optimizer::DAMPED_NEWTON) {
-    dampedNewton(evaluation.onFineLevel(), limits, options.least_curvature_share, result);
+    dampedNewton(evaluation.onFineLevel(), limits, options.min_curvature_share, result);
   } else {
     newtonMoreThuente(evaluation.onFineLevel(), limits, options.line_search_min_step, options.line_search_max_step,
                       result);

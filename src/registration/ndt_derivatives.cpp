@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 Vector6d NdtDerivatives::gradient() const {
   Vector6d gradient;
@@ -44,4 +44,4 @@ EulerDerivatives eulerDerivatives(const NdtDerivatives& derivatives, const Eigen
   return euler;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -5,7 +5,7 @@
 
 #include "saw_ndt/common/geometry.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Score of a pose and what its first and second derivatives in any parameterization of the pose follow from.
 ///
@@ -36,4 +36,4 @@ struct EulerDerivatives {
 /// @param roll_pitch_yaw  the angles (rad) of the pose at which `derivatives` were taken
 EulerDerivatives eulerDerivatives(const NdtDerivatives& derivatives, const Eigen::Vector3d& roll_pitch_yaw);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

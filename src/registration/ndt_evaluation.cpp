@@ -6,7 +6,7 @@
 #include "registration/score_function.h"
 #include "registration/vectorized_ndt_objective.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 template <typename Objective>
 Objective NdtEvaluation::objectiveOn(const internal::NdtLevel& level) const {
@@ -53,4 +53,4 @@ Likelihoods NdtEvaluation::likelihoods(const Eigen::Isometry3d& T_map_source) {
                              internal::threadCount(options_->threads), batches_);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -10,7 +10,7 @@
 #include "saw_ndt/registration/alignment.h"
 #include "saw_ndt/registration/source_points.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Score and derivatives at a pose.
 using Evaluation = std::function<NdtDerivatives(const Eigen::Isometry3d& T_map_source)>;
@@ -41,4 +41,4 @@ class NdtEvaluation {
   NdtObjective::Workspace workspace_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -7,7 +7,7 @@
 #include "common/vector_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -18,14 +18,14 @@ using Vector = hn::Vec<Float>;
 
 // Less is raised to this: 2^-60 adds nothing, and its products are no subnormal numbers, which would slow everything
 // down.
-constexpr float kLeastExponent = -60.0F;
+constexpr float kMinExponent = -60.0F;
 
 // 2^x for x <= 0, to 2e-7 of its value: x = n + f with |f| <= 1/2; a minimax polynomial of f, whose exponent n is added
 // to. Adding kRound leaves n in the lowest bits of a float.
 HWY_INLINE Vector exp2OfNegative(Float d, Vector x) {
   constexpr float kRound = 12582912.0F;  // 1.5 * 2^23
   const Int di;
-  x = hn::Max(x, hn::Set(d, kLeastExponent));
+  x = hn::Max(x, hn::Set(d, kMinExponent));
   const Vector shifted = hn::Add(x, hn::Set(d, kRound));
   const Vector f = hn::Sub(x, hn::Sub(shifted, hn::Set(d, kRound)));
   Vector p = hn::MulAdd(f, hn::Set(d, 0.0013264727F), hn::Set(d, 0.0096715128F));
@@ -155,7 +155,7 @@ std::size_t sumPairs(const BatchPoints& points, const float* confidence, const P
   const Float d;
   const Vector factor = hn::Set(d, parameters.exponent_factor);
   const Vector one = hn::Set(d, 1.0F);
-  const Vector least_compatibility = hn::Set(d, parameters.least_compatibility);
+  const Vector min_compatibility = hn::Set(d, parameters.min_compatibility);
   const Vector mismatch_slope = hn::Set(d, parameters.mismatch_slope);
   const Vector radius_squared = hn::Set(d, parameters.radius_m * parameters.radius_m);
   std::size_t pair_count = 0;
@@ -184,7 +184,7 @@ std::size_t sumPairs(const BatchPoints& points, const float* confidence, const P
       }
       if (weighted) {
         const Vector difference = hn::Abs(hn::Sub(source_confidence, v.confidence));
-        const Vector compatibility = hn::Max(least_compatibility, hn::NegMulAdd(difference, mismatch_slope, one));
+        const Vector compatibility = hn::Max(min_compatibility, hn::NegMulAdd(difference, mismatch_slope, one));
         e = hn::Mul(e, hn::Mul(compatibility, v.weight));
       }
       score = hn::Add(score, e);
@@ -364,11 +364,11 @@ BatchScores scores(const BatchPoints& points, const float* non_ground, const Bat
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 HWY_EXPORT(pairs);
 HWY_EXPORT(scores);
@@ -388,5 +388,5 @@ BatchScores evaluateScores(const BatchPoints& points, const float* non_ground, c
   return SAW_NDT_DISPATCH(scores)(points, non_ground, units, voxels, parameters);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 #endif

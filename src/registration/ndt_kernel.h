@@ -6,7 +6,7 @@
 #include "map/ndt_level.h"
 #include "registration/batch_transform.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 // The inner loops of an evaluation, in single precision, compiled for each instruction set. Points come in batches,
 // in an order in which points of one voxel follow each other. Such a run shares its
@@ -52,9 +52,9 @@ struct PairParameters {
   float amplitude;
   float exponent_factor;  ///< -d2 / 2 / ln 2
   bool weighted;
-  float least_compatibility;  ///< lambda_m
-  float mismatch_slope;       ///< (1 - lambda_m) / |s_o - s_g|, 0 where the two are alike
-  bool within_radius;         ///< only voxels whose mean is no farther than `radius_m`
+  float min_compatibility;  ///< lambda_m
+  float mismatch_slope;     ///< (1 - lambda_m) / |s_o - s_g|, 0 where the two are alike
+  bool within_radius;       ///< only voxels whose mean is no farther than `radius_m`
   float radius_m;
 };
 
@@ -84,4 +84,4 @@ struct BatchScores {
 BatchScores evaluateScores(const BatchPoints& points, const float* non_ground, const BatchUnits& units,
                            const BatchVoxels& voxels, const PairParameters& parameters);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

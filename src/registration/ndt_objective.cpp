@@ -8,7 +8,7 @@
 #include "common/executor.h"
 #include "registration/voxel_pairs.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 constexpr std::size_t kPointsPerBlock = 1024;
@@ -154,4 +154,4 @@ NdtDerivatives NdtObjective::evaluate(const SourcePoints& source, const Eigen::I
   return total;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -9,7 +9,7 @@
 #include "saw_ndt/registration/alignment.h"
 #include "saw_ndt/registration/source_points.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// W_ij of eq. (1) of the paper, or 1 for every pair.
 struct PairWeighting {
@@ -51,4 +51,4 @@ class NdtObjective {
   PairWeighting weighting_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

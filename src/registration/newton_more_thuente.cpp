@@ -4,7 +4,7 @@
 #include "registration/line_search.h"
 #include "registration/optimizers.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 void newtonMoreThuente(const Evaluation& evaluate, const StepLimits& limits, double line_search_min_step,
                        double line_search_max_step, AlignmentResult& result) {
@@ -57,4 +57,4 @@ void newtonMoreThuente(const Evaluation& evaluate, const StepLimits& limits, dou
   result.information = derivatives.curvature;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

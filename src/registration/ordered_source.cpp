@@ -8,7 +8,7 @@
 #include "common/executor.h"
 #include "registration/batch_transform.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 // Behind the last point, for vectors that reach beyond it.
@@ -96,7 +96,7 @@ void OrderedSource::order(const SourcePoints& source, double resolution_m, const
     std::size_t non_ground_count = 0;
     for (std::size_t i = begin_of(part); i < begin_of(part + 1); ++i) {
       const std::uint32_t place = places[columns_[i]]++;
-      const bool non_ground = source.label[i] != static_cast<std::uint8_t>(StructuralLabel::Ground);
+      const bool non_ground = source.label[i] != static_cast<std::uint8_t>(StructuralLabel::GROUND);
       x_[place] = source.x[i];
       y_[place] = source.y[i];
       z_[place] = source.z[i];
@@ -155,4 +155,4 @@ void OrderedSource::regroup(std::size_t first, const BatchPoints& batch) {
   groups_of_batch_[first / kPointsPerBatch] = groups.count();
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

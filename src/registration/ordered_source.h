@@ -6,7 +6,7 @@
 #include "saw_ndt/map/voxel_weighting.h"
 #include "saw_ndt/registration/source_points.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 struct BatchPoints;
 
@@ -52,4 +52,4 @@ class OrderedSource {
   std::vector<std::uint32_t> places_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

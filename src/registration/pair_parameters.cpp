@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 PairParameters pairParameters(const internal::NdtLevel& level, NeighborhoodSearchMethod method,
                               const ScoreParameters& score, const PairWeighting& weighting) {
@@ -13,11 +13,11 @@ PairParameters pairParameters(const internal::NdtLevel& level, NeighborhoodSearc
   parameters.weighted = weighting.enabled;
   const double range = std::abs(weighting.confidence.non_ground - weighting.confidence.ground);
   const double mismatch = 1.0 - weighting.mismatch_penalty;
-  parameters.least_compatibility = static_cast<float>(weighting.mismatch_penalty);
+  parameters.min_compatibility = static_cast<float>(weighting.mismatch_penalty);
   parameters.mismatch_slope = range > 0.0 ? static_cast<float>(mismatch / range) : 0.0F;
   parameters.within_radius = method == NeighborhoodSearchMethod::RADIUS;
   parameters.radius_m = static_cast<float>(level.resolution());
   return parameters;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 ScoreParameters scoreParameters(ScoreFunction function, double outlier_ratio, double resolution_m) {
-  if (function == ScoreFunction::Paper) return {1.0, 1.0};
+  if (function == ScoreFunction::PAPER) return {1.0, 1.0};
   const double c1 = 10.0 * (1.0 - outlier_ratio);
   const double c2 = outlier_ratio / (resolution_m * resolution_m * resolution_m);
   // -log(c1 + c2) + log(c2) and its like at one standard deviation; log1p keeps digits where c2 is huge.
@@ -14,4 +14,4 @@ ScoreParameters scoreParameters(ScoreFunction function, double outlier_ratio, do
   return {-d1, -2.0 * std::log(at_one_sigma / d1)};
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -2,7 +2,7 @@
 
 #include "saw_ndt/registration/alignment.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 struct ScoreParameters {
   double amplitude = 1.0;  ///< -d1 of Magnusson, positive
@@ -13,4 +13,4 @@ struct ScoreParameters {
 /// @param resolution_m   edge of the voxels
 ScoreParameters scoreParameters(ScoreFunction function, double outlier_ratio, double resolution_m);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

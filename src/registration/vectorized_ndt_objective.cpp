@@ -8,7 +8,7 @@
 #include "registration/batch_voxel_finder.h"
 #include "registration/pair_parameters.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 Matrix6d symmetricFromRows(const double* upper) {
@@ -60,4 +60,4 @@ NdtDerivatives VectorizedNdtObjective::evaluate(OrderedSource& source, const Eig
   return derivatives;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

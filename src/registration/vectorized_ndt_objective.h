@@ -6,7 +6,7 @@
 #include "registration/ndt_objective.h"
 #include "registration/ordered_source.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// NdtObjective in single precision and with the processor's vector instructions: score and derivatives agree with it
 /// to about 1e-6 of their size, more than ten times faster.
@@ -28,4 +28,4 @@ class VectorizedNdtObjective {
   PairWeighting weighting_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

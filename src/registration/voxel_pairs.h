@@ -6,7 +6,7 @@
 #include "map/ndt_level.h"
 #include "registration/ndt_objective.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// How many voxels a neighbour is away along each axis.
 struct Neighbour {
@@ -104,4 +104,4 @@ struct WhitenedOffset {
 // A pair whose exponent is below -kLargestExponent adds less than 5e-18 of its amplitude: less than rounding.
 constexpr double kLargestExponent = 40.0;
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -8,6 +8,8 @@
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -14,6 +14,8 @@
 
 namespace saw_ndt {
 
+using namespace internal;
+
 namespace fs = std::filesystem;
 
 namespace {

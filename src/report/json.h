@@ -17,7 +17,7 @@ nlohmann::ordered_json toJson(const TrajectoryMetrics& metrics);
 nlohmann::ordered_json toJson(const KittiRelativeErrors& errors);
 
 /// {"mean", "p50", "p95", "max"}
-nlohmann::ordered_json toJson(const DurationStatistics& durations);
+nlohmann::ordered_json toJson(const internal::DurationStatistics& durations);
 
 /// The object that is summary.json; the errors are members of it where they are known.
 nlohmann::ordered_json toJson(const LocalizationSummary& summary);

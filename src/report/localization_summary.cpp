@@ -15,6 +15,8 @@
 #include "saw_ndt/io/trajectory.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 double peakResidentMegabytes() {

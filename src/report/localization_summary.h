@@ -18,7 +18,7 @@ bool anyScanAfterSkip(const std::vector<double>& stamps_s, double skip_s);
 struct LocalizationSummary {
   std::string method;
   std::size_t scans = 0, accepted = 0, rejected = 0;
-  DurationStatistics total_ms, segment_ms, filter_ms, align_ms;
+  internal::DurationStatistics total_ms, segment_ms, filter_ms, align_ms;
   double source_points_mean = 0.0;
   double iterations_mean = 0.0, evaluations_mean = 0.0;
   double likelihood_mean = 0.0, nearest_voxel_likelihood_mean = 0.0, non_ground_likelihood_mean = 0.0;

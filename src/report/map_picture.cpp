@@ -40,7 +40,7 @@ using Columns = std::vector<std::vector<double>>;
 Columns voxelsOf(const BenchmarkRun& run, const Window& window, bool ground) {
   Columns columns(2);
   for (const VoxelPoint& voxel : run.voxels) {
-    if ((voxel.label == static_cast<std::uint32_t>(StructuralLabel::Ground)) != ground) continue;
+    if ((voxel.label == static_cast<std::uint32_t>(StructuralLabel::GROUND)) != ground) continue;
     if (!window.contains(voxel.x, voxel.y)) continue;
     columns[0].push_back(voxel.x);
     columns[1].push_back(voxel.y);

@@ -10,6 +10,8 @@
 #include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -15,6 +15,8 @@
 extern template class pcl::NormalDistributionsTransform<pcl::PointXYZ, pcl::PointXYZ>;
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 constexpr double kTransformationEpsilon = 1e-4;
@@ -100,8 +102,7 @@ double PclNdt::evaluate(const Eigen::Isometry3d& T_map_source) { return registra
 
 std::size_t PclNdt::pairCount(const Eigen::Isometry3d& T_map_source) { return registration_->pairCount(T_map_source); }
 
-SourceAligner pclNdtAligner(const PclNdt::Cloud::ConstPtr& target, double resolution_m,
-                            const NdtTarget& judge) {
+SourceAligner pclNdtAligner(const PclNdt::Cloud::ConstPtr& target, double resolution_m, const NdtTarget& judge) {
   // A std::function must be copyable.
   auto ndt = std::make_shared<PclNdt>(target, resolution_m);
   return [ndt, judge](const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted) {

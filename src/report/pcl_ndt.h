@@ -46,8 +46,7 @@ class PclNdt {
 /// PclNdt as the aligner of a Localizer, whose min_likelihood should be 0: likelihoods are told by a target of ours.
 /// @param judge  by whose fine level the likelihoods are told
 /// @throws std::invalid_argument as PclNdt
-SourceAligner pclNdtAligner(const PclNdt::Cloud::ConstPtr& target, double resolution_m,
-                            const NdtTarget& judge);
+SourceAligner pclNdtAligner(const PclNdt::Cloud::ConstPtr& target, double resolution_m, const NdtTarget& judge);
 
 /// The finite points of all scans of a source, moved by their reference poses (single precision, map frame).
 /// @param scan_done  called after each scan; may be empty

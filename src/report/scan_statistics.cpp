@@ -16,6 +16,8 @@
 #include "segmentation/segmentation_stages.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 constexpr int kRingGroups = 8;
@@ -46,7 +48,7 @@ double surfaceThickness(const ScanView& scan, const std::vector<StructuralLabel>
   weighting.min_eigenvalue_ratio = 1e-6;
   std::vector<double> thicknesses_m;
   for (const VoxelStatistics& voxel : std::move(builder).build().statistics(weighting, 1)) {
-    if (voxel.structure_class != StructureClass::Planar || voxel.point_count < kFewestPoints) continue;
+    if (voxel.structure_class != StructureClass::PLANAR || voxel.point_count < kFewestPoints) continue;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(voxel.covariance, Eigen::EigenvaluesOnly);
     thicknesses_m.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[0])));
   }
@@ -86,11 +88,11 @@ ScanStatistics scanStatistics(const ScanView& scan, const std::vector<std::uint1
   }
   figures.emplace_back("voxels_of_1_m", occupiedVoxels(scan, 1.0f));
   figures.emplace_back("voxels_of_0.2_m", occupiedVoxels(scan, 0.2f));
-  figures.emplace_back("ground_label_share", share(StructuralLabel::Ground));
-  figures.emplace_back("noise_label_share", share(StructuralLabel::Noise));
+  figures.emplace_back("ground_label_share", share(StructuralLabel::GROUND));
+  figures.emplace_back("noise_label_share", share(StructuralLabel::NOISE));
   // Walls are rough and have windows: the lower quartile is more of a plane than the median.
-  figures.emplace_back("ground_thickness_p50_m", surfaceThickness(scan, labels, StructuralLabel::Ground, 50.0));
-  figures.emplace_back("other_thickness_p25_m", surfaceThickness(scan, labels, StructuralLabel::NonGround, 25.0));
+  figures.emplace_back("ground_thickness_p50_m", surfaceThickness(scan, labels, StructuralLabel::GROUND, 50.0));
+  figures.emplace_back("other_thickness_p25_m", surfaceThickness(scan, labels, StructuralLabel::NON_GROUND, 25.0));
   if (!semantic_classes.empty()) {
     double known = 0.0, ground = 0.0;
     for (const std::uint16_t semantic_class : semantic_classes) {

@@ -53,9 +53,9 @@ GroundScore scoreGround(const std::vector<StructuralLabel>& labels,
   GroundScore score;
   score.points = labels.size();
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i] == StructuralLabel::Noise) ++score.noise_points;
+    if (labels[i] == StructuralLabel::NOISE) ++score.noise_points;
     if (semantic_classes[i] <= 1) continue;
-    const bool found = labels[i] == StructuralLabel::Ground;
+    const bool found = labels[i] == StructuralLabel::GROUND;
     if (isSemanticKittiGround(semantic_classes[i])) {
       ++(found ? score.true_positives : score.false_negatives);
     } else {

@@ -10,7 +10,7 @@
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/component_loops.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 // LeGO-LOAM connects ranges d1 >= d2, an angle a apart, where atan2(d2 sin a, d1 - d2 cos a) > t. As d1 > d2 cos a,
@@ -21,14 +21,6 @@ float connectionRatio(double apart_deg, double threshold_deg) {
 }
 
 }  // namespace
-
-void ComponentOptions::check() const {
-  checkOption(connection_angle_deg > 0.0 && connection_angle_deg < 90.0, "connection_angle_deg", connection_angle_deg,
-              "above 0 and below 90");
-  checkOption(minimum_points >= 1, "minimum_points", minimum_points, "at least 1");
-  checkOption(minimum_points_tall >= 1, "minimum_points_tall", minimum_points_tall, "at least 1");
-  checkOption(minimum_rings_tall >= 1, "minimum_rings_tall", minimum_rings_tall, "at least 1");
-}
 
 void ComponentFilter::label(const RangeImage& image, const SensorModel& sensor, const std::vector<std::uint8_t>& ground,
                             const ComponentOptions& options, std::vector<StructuralLabel>& labels, int threads) {
@@ -166,8 +158,8 @@ void ComponentFilter::writeLabels(int row, const std::vector<std::uint8_t>& grou
     for (std::int32_t i = index; root->parent != i; root = &runs_[i]) i = root->parent;
     // 4-connected: the rows of a component have no gap, and its root is in the topmost.
     const int rings = root->bottom_row - root->top_row + 1;
-    const bool is_tall = (root->points >= options.minimum_points_tall) & (rings >= options.minimum_rings_tall);
-    const auto is_kept = static_cast<std::uint64_t>(is_tall | (root->points >= options.minimum_points));
+    const bool is_tall = (root->points >= options.min_points_tall) & (rings >= options.min_rings_tall);
+    const auto is_kept = static_cast<std::uint64_t>(is_tall | (root->points >= options.min_points));
     kept[run.begin / 64] ^= is_kept << run.begin % 64;
     kept[run.end / 64] ^= is_kept << run.end % 64;
   }
@@ -201,4 +193,4 @@ void ComponentFilter::unite(std::int32_t first, std::int32_t second) {
   root.bottom_row = std::max(root.bottom_row, child.bottom_row);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -8,7 +8,7 @@
 #include "saw_ndt/segmentation/segmentation_options.h"
 #include "segmentation/range_image.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Two runs of pixels (see ComponentFilter), one above the other, that are connected.
 struct RunPair {
@@ -75,4 +75,4 @@ class ComponentFilter {
   std::vector<RowBuffers> buffers_;          ///< one a thread
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -5,7 +5,7 @@
 #include "common/vector_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -107,10 +107,10 @@ std::size_t pairsOfRows(std::size_t words, const RowBits& row, const RowBits& ab
 }
 
 void labelRow(std::size_t count, const std::uint8_t* ground, const std::uint64_t* kept, StructuralLabel* labels) {
-  static_assert(static_cast<int>(StructuralLabel::Ground) == 1 && static_cast<int>(StructuralLabel::Noise) == 0,
+  static_assert(static_cast<int>(StructuralLabel::GROUND) == 1 && static_cast<int>(StructuralLabel::NOISE) == 0,
                 "what tells of ground is a label");
   auto* const values = reinterpret_cast<std::uint8_t*>(labels);
-  constexpr auto kNonGround = static_cast<std::uint8_t>(StructuralLabel::NonGround);
+  constexpr auto kNonGround = static_cast<std::uint8_t>(StructuralLabel::NON_GROUND);
   std::size_t i = 0;
 #if HWY_TARGET != HWY_SCALAR
   const hn::ScalableTag<std::uint8_t> d;
@@ -125,11 +125,11 @@ void labelRow(std::size_t count, const std::uint8_t* ground, const std::uint64_t
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 HWY_EXPORT(withoutGround);
 HWY_EXPORT(linkRow);
@@ -165,5 +165,5 @@ void labelPixels(std::size_t count, const std::uint8_t* ground, const std::uint6
   SAW_NDT_DISPATCH(labelRow)(count, ground, kept, labels);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 #endif

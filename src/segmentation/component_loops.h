@@ -5,7 +5,7 @@
 
 #include "segmentation/component_filter.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// How a pixel's range and that of a neighbour must compare for the two to be connected; see connected().
 struct ConnectionRatios {
@@ -50,4 +50,4 @@ std::size_t pairsOfRuns(std::size_t words, const RowBits& row, const RowBits& ab
 /// NonGround where the bit of `kept` is set, else Ground where `ground` is 1, else Noise.
 void labelPixels(std::size_t count, const std::uint8_t* ground, const std::uint64_t* kept, StructuralLabel* labels);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

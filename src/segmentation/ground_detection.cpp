@@ -8,27 +8,16 @@
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/ground_loops.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 float tangent(double degrees) { return static_cast<float>(std::tan(radiansFromDegrees(degrees))); }
 
 }  // namespace
 
-void GroundOptions::check() const {
-  const auto in = [](double value, double least, double greatest) { return value >= least && value <= greatest; };
-  checkOption(in(inclination_limit_deg, 0.0, 90.0), "inclination_limit_deg", inclination_limit_deg, "0 to 90");
-  checkOption(in(inclination_top_elevation_deg, -90.0, 90.0), "inclination_top_elevation_deg",
-              inclination_top_elevation_deg, "-90 to 90");
-  checkOption(in(sensor_height_m, 0.0, 100.0), "sensor_height_m", sensor_height_m, "0 to 100");
-  checkOption(in(slope_deg, 0.0, 60.0), "slope_deg", slope_deg, "0 to 60");
-  checkOption(in(step_tolerance_m, 0.0, 10.0), "step_tolerance_m", step_tolerance_m, "0 to 10");
-  checkOption(in(profile_tolerance_m, 0.0, 10.0), "profile_tolerance_m", profile_tolerance_m, "0 to 10");
-}
-
 void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
                              std::vector<std::uint8_t>& ground, int threads) {
-  if (options.rule == GroundRule::Inclination) {
+  if (options.rule == GroundRule::INCLINATION) {
     detectByInclination(image, sensor, options, ground);
     return;
   }
@@ -139,4 +128,4 @@ void GroundDetection::settle(const RangeImage& image, int row, bool smooths, Nei
   settleRow(columns, middle, sums.returns.data(), sums.ground.data(), result);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

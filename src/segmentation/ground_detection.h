@@ -7,7 +7,7 @@
 #include "saw_ndt/segmentation/segmentation_options.h"
 #include "segmentation/range_image.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// Finds ground in range images. Memory is kept from one image to the next.
 class GroundDetection {
@@ -40,4 +40,4 @@ class GroundDetection {
   std::vector<NeighbourSums> neighbour_sums_;  ///< one a thread
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -5,7 +5,7 @@
 #include "common/vector_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -68,11 +68,11 @@ void settlePixels(std::size_t columns, const std::uint8_t* __restrict states, co
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 HWY_EXPORT(growRowOfPixels);
 HWY_EXPORT(sumPixels);
@@ -92,5 +92,5 @@ void settleRow(std::size_t columns, const std::uint8_t* states, const std::uint8
   SAW_NDT_DISPATCH(settlePixels)(columns, states, returns, ground, result);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 #endif

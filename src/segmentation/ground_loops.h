@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 // States of a pixel while ground grows, each implying those before it. Doubtful: near the profile, yet too steep a step
 // from the last ground return.
@@ -43,4 +43,4 @@ void sumColumns(std::size_t columns, const std::uint8_t* above, const std::uint8
 void settleRow(std::size_t columns, const std::uint8_t* states, const std::uint8_t* returns, const std::uint8_t* ground,
                std::uint8_t* result);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -10,7 +10,7 @@
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/range_image_loops.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 constexpr auto kMostReturns = std::numeric_limits<std::uint16_t>::max();
@@ -154,4 +154,4 @@ void RangeImage::placePoints(std::size_t begin, std::size_t end, std::size_t fir
   std::copy_n(count, pixels, returns_.data() + first_pixel);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

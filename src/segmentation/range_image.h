@@ -8,7 +8,7 @@
 #include "saw_ndt/common/sensor_model.h"
 #include "segmentation/ring_index.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// A scan projected by vertical scan index and azimuth (section III.A of the paper). Row 0 is the top beam; column 0
 /// begins straight ahead and columns count counter-clockwise. All images are row-major, rows() x columns().
@@ -71,4 +71,4 @@ class RangeImage {
   std::vector<PixelReturns> pixel_returns_;  ///< one a thread
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

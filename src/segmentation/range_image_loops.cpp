@@ -9,7 +9,7 @@
 #include "common/vector_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -21,7 +21,7 @@ constexpr std::size_t kBlock = PointMeasurements::kBlock;
 constexpr std::uint16_t kNoColumn = PointMeasurements::kNoColumn;
 constexpr float kTurn = static_cast<float>(2.0 * kPi);
 constexpr float kGreatestFloat = 3.402823466e+38F;
-constexpr float kLeastNormalFloat = 1.175494351e-38F;
+constexpr float kMinNormalFloat = 1.175494351e-38F;
 
 // The angle of (x, y) from the x axis, 0 to 2 pi, to 2e-6 rad and without a branch, so that the compiler makes vector
 // code of a loop over it. Minimax polynomial of the arc tangent on [0, 1] (Abramowitz and Stegun 4.4.49).
@@ -30,7 +30,7 @@ HWY_INLINE float azimuthOf(float x, float y) {
   const float absolute_y = __builtin_fabsf(y);
   const float greater = absolute_x < absolute_y ? absolute_y : absolute_x;
   const float smaller = absolute_y < absolute_x ? absolute_y : absolute_x;
-  const float t = smaller / (greater < kLeastNormalFloat ? kLeastNormalFloat : greater);
+  const float t = smaller / (greater < kMinNormalFloat ? kMinNormalFloat : greater);
   const float s = t * t;
   const float polynomial =
       1.0F +
@@ -121,11 +121,11 @@ void addFirstPixel(std::size_t count, const std::uint16_t* __restrict column, st
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 HWY_EXPORT(measure);
 HWY_EXPORT(addFirstPixel);
@@ -139,5 +139,5 @@ void pixelsOfColumns(std::size_t count, const std::uint16_t* column, std::int32_
   SAW_NDT_DISPATCH(addFirstPixel)(count, column, first_pixel, pixel);
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal
 #endif

@@ -5,7 +5,7 @@
 
 #include "segmentation/ring_index.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// How points become columns and heights.
 struct ProjectionGeometry {
@@ -31,4 +31,4 @@ void measurePoints(std::size_t count, std::size_t stride, const float* xyz, cons
 /// Writes pixel = first_pixel + column, or RangeImage::kNoPixel where there is no column.
 void pixelsOfColumns(std::size_t count, const std::uint16_t* column, std::int32_t first_pixel, std::int32_t* pixel);
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -8,7 +8,7 @@
 
 #include "saw_ndt/common/geometry.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 namespace {
 
 // A smaller fall is a point that parallax or motion compensation put behind its predecessor (10 degrees on KITTI).
@@ -57,7 +57,7 @@ bool isOrganized(const ScanView& scan, int rows) {
 
 void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
   if (isOrganized(scan, sensor.rows())) {
-    source_ = VerticalIndexSource::OrganizedRow;
+    source_ = VerticalIndexSource::ORGANIZED_ROW;
     runs_.clear();
     for (int row = 0; row < sensor.rows(); ++row) {
       const std::size_t begin = static_cast<std::size_t>(row) * scan.width;
@@ -66,7 +66,7 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
     if (!rowsRise(scan, points, sensor)) return;
     for (RowRun& run : runs_) run.row = static_cast<std::int16_t>(sensor.rows() - 1 - run.row);
   } else if (scan.rings.known()) {
-    source_ = VerticalIndexSource::RingField;
+    source_ = VerticalIndexSource::RING_FIELD;
     rows_.resize(scan.size);
     for (std::size_t i = 0; i < scan.size; ++i) {
       const double ring = scan.rings[i];
@@ -81,9 +81,9 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
     if (!rowsRise(scan, points, sensor)) return;
     for (std::int16_t& row : rows_) row = static_cast<std::int16_t>(sensor.rows() - 1 - row);
   } else if (findRuns(scan, points, sensor) && matchRunsToBeams(scan, points, sensor)) {
-    source_ = VerticalIndexSource::FileOrder;
+    source_ = VerticalIndexSource::FILE_ORDER;
   } else {
-    source_ = VerticalIndexSource::ElevationTable;
+    source_ = VerticalIndexSource::ELEVATION_TABLE;
     assignFromElevation(scan, points, sensor);
   }
 }
@@ -208,4 +208,4 @@ bool RingIndex::rowsRise(const ScanView& scan, const PointMeasurements& points, 
   return products * count > rows * sines;
 }
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

@@ -7,14 +7,14 @@
 #include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/common/sensor_model.h"
 
-namespace saw_ndt {
+namespace saw_ndt::internal {
 
 /// What tells which beam measured a point, in order of preference.
 enum class VerticalIndexSource {
-  OrganizedRow,    ///< the row of an organized cloud with one row a beam
-  RingField,       ///< the ring number of the points
-  FileOrder,       ///< points listed ring after ring from the top, azimuth rising from 0 to 360 degrees (as KITTI does)
-  ElevationTable,  ///< the beam of the sensor model that is nearest in elevation
+  ORGANIZED_ROW,  ///< the row of an organized cloud with one row a beam
+  RING_FIELD,     ///< the ring number of the points
+  FILE_ORDER,     ///< points listed ring after ring from the top, azimuth rising from 0 to 360 degrees (as KITTI does)
+  ELEVATION_TABLE,  ///< the beam of the sensor model that is nearest in elevation
 };
 
 /// Least and greatest column of some points; the least is above the greatest where none of them has a column.
@@ -57,7 +57,7 @@ class RingIndex {
 
   /// Whether the scan lists its points row after row, each row once, as organized clouds and those in file order do.
   bool rowAfterRow() const {
-    return source_ == VerticalIndexSource::OrganizedRow || source_ == VerticalIndexSource::FileOrder;
+    return source_ == VerticalIndexSource::ORGANIZED_ROW || source_ == VerticalIndexSource::FILE_ORDER;
   }
   /// Rows of a scan that lists them one after the other, in the order of the scan; together they hold every point.
   const std::vector<RowRun>& runs() const { return runs_; }
@@ -73,7 +73,7 @@ class RingIndex {
   bool matchRunsToBeams(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
 
   std::vector<std::int16_t> rows_;
-  VerticalIndexSource source_ = VerticalIndexSource::ElevationTable;
+  VerticalIndexSource source_ = VerticalIndexSource::ELEVATION_TABLE;
   std::vector<RowRun> runs_;
   std::vector<float> samples_;
   std::vector<float> run_elevations_;
@@ -83,4 +83,4 @@ class RingIndex {
   std::vector<float> beam_sines_;
 };
 
-}  // namespace saw_ndt
+}  // namespace saw_ndt::internal

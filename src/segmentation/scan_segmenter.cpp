@@ -8,6 +8,8 @@
 
 namespace saw_ndt {
 
+using namespace internal;
+
 ScanSegmenter::ScanSegmenter(const SegmentationOptions& options)
     : stages_((options.check(), std::make_unique<internal::SegmentationStages>())) {
   stages_->options = options;
@@ -35,7 +37,7 @@ void ScanSegmenter::segment(const ScanView& scan, std::vector<StructuralLabel>& 
     const std::size_t end = std::min(scan.size, (chunk + 1) * kPointsAtOnce);
     for (std::size_t i = chunk * kPointsAtOnce; i < end; ++i) {
       const std::int32_t pixel = pixel_of_point[i];
-      point_labels[i] = pixel == RangeImage::kNoPixel ? StructuralLabel::Noise : pixel_labels[pixel];
+      point_labels[i] = pixel == RangeImage::kNoPixel ? StructuralLabel::NOISE : pixel_labels[pixel];
     }
   });
 }

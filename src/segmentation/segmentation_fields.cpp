@@ -43,7 +43,7 @@ bool parseField(std::string_view text, bool& value) {
   return value || text == "false";
 }
 bool parseField(std::string_view text, GroundRule& value) {
-  for (const GroundRule rule : {GroundRule::Inclination, GroundRule::Growing}) {
+  for (const GroundRule rule : {GroundRule::INCLINATION, GroundRule::GROWING}) {
     if (text != toString(rule)) continue;
     value = rule;
     return true;

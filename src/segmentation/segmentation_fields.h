@@ -26,9 +26,9 @@ void forEachField(Options& options, const Visit& visit) {
   visit("ground.profile_tolerance_m", options.ground.profile_tolerance_m);
   visit("ground.smooths", options.ground.smooths);
   visit("components.connection_angle_deg", options.components.connection_angle_deg);
-  visit("components.minimum_points", options.components.minimum_points);
-  visit("components.minimum_points_tall", options.components.minimum_points_tall);
-  visit("components.minimum_rings_tall", options.components.minimum_rings_tall);
+  visit("components.min_points", options.components.min_points);
+  visit("components.min_points_tall", options.components.min_points_tall);
+  visit("components.min_rings_tall", options.components.min_rings_tall);
 }
 
 /// A field's value as text from which parseField() makes the same value, bit for bit. Several numbers stand apart by

@@ -7,6 +7,8 @@
 #include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using Fields = std::vector<std::pair<std::string, std::string>>;
@@ -21,6 +23,25 @@ Fields fieldsOf(const SegmentationOptions& options) {
 
 }  // namespace
 
+void GroundOptions::check() const {
+  const auto in = [](double value, double least, double greatest) { return value >= least && value <= greatest; };
+  checkOption(in(inclination_limit_deg, 0.0, 90.0), "inclination_limit_deg", inclination_limit_deg, "0 to 90");
+  checkOption(in(inclination_top_elevation_deg, -90.0, 90.0), "inclination_top_elevation_deg",
+              inclination_top_elevation_deg, "-90 to 90");
+  checkOption(in(sensor_height_m, 0.0, 100.0), "sensor_height_m", sensor_height_m, "0 to 100");
+  checkOption(in(slope_deg, 0.0, 60.0), "slope_deg", slope_deg, "0 to 60");
+  checkOption(in(step_tolerance_m, 0.0, 10.0), "step_tolerance_m", step_tolerance_m, "0 to 10");
+  checkOption(in(profile_tolerance_m, 0.0, 10.0), "profile_tolerance_m", profile_tolerance_m, "0 to 10");
+}
+
+void ComponentOptions::check() const {
+  checkOption(connection_angle_deg > 0.0 && connection_angle_deg < 90.0, "connection_angle_deg", connection_angle_deg,
+              "above 0 and below 90");
+  checkOption(min_points >= 1, "min_points", min_points, "at least 1");
+  checkOption(min_points_tall >= 1, "min_points_tall", min_points_tall, "at least 1");
+  checkOption(min_rings_tall >= 1, "min_rings_tall", min_rings_tall, "at least 1");
+}
+
 void SegmentationOptions::check() const {
   sensor.check();
   checkOption(mounting_pitch_deg >= -90.0 && mounting_pitch_deg <= 90.0, "mounting_pitch_deg", mounting_pitch_deg,
@@ -29,7 +50,7 @@ void SegmentationOptions::check() const {
   components.check();
 }
 
-const char* toString(GroundRule rule) { return rule == GroundRule::Growing ? "growing" : "inclination"; }
+const char* toString(GroundRule rule) { return rule == GroundRule::GROWING ? "growing" : "inclination"; }
 
 std::optional<OptionDifference> firstDifference(const SegmentationOptions& first, const SegmentationOptions& second) {
   const Fields first_fields = fieldsOf(first), second_fields = fieldsOf(second);

@@ -15,6 +15,8 @@
 #include "simulation/return_model.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 // The LiDAR's pose during a scan is read off at this many moments; in between, straight lines miss it by less than a

@@ -9,6 +9,8 @@
 #include "simulation/object_meshes.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using nlohmann::json;

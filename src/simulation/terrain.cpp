@@ -9,6 +9,8 @@
 #include "simulation/lattice_noise.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 // The road's height at a point is a mean over the stations within this distance, the near ones weighing most.

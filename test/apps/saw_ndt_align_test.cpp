@@ -12,6 +12,8 @@
 #include "saw_ndt/io/point_cloud_file.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 Eigen::Isometry3d transformIn(const nlohmann::json& json) {

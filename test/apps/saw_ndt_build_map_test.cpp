@@ -52,7 +52,7 @@ TEST_F(BuildMapApp, WrongUsageIsNamed) {
   expectBuildFails(2, {"-resolution"}, "-resolution fine");
   expectBuildFails(2, {"resolution", "-1"}, "-resolution -1");
   expectBuildFails(2, {"scan selection '7:'"}, "-scans 7:");
-  expectBuildFails(2, {"mounting_pitch_deg"}, "-mounting-pitch_deg 120");
+  expectBuildFails(2, {"mounting_pitch_deg"}, "-mounting-pitch-deg 120");
   expectBuildFails(2, {"-max-speed"}, "-max-speed 3");
   expectFails(SAW_NDT_APP, quoted(drive_folder), 2, {"missing MAP"});
   expectFails(SAW_NDT_APP, quoted(drive_folder) + quoted(map_file) + "-sensor HDL-1", 2, {"-sensor", "HDL-1"});

@@ -14,6 +14,8 @@
 #include "saw_ndt/map/ndt_target.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 class MapInfoApp : public ::testing::Test {

@@ -11,6 +11,8 @@
 #include "segmentation/synthetic_scan.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 /// Flat ground, and ahead of the sensor a wall across the road, 15 m away and 3 m high.
@@ -109,7 +111,7 @@ TEST_F(SegmentApp, SaysWhatIsWrongAndWritesNothing) {
   } cases[] = {
       {quoted("a.bin"), 2, "missing OUT.pcd"},
       {good + "-sensor LMS", 2, "'LMS' is none of"},
-      {good + "-mounting-pitch_deg 120", 2, "mounting_pitch_deg = 120"},
+      {good + "-mounting-pitch-deg 120", 2, "mounting_pitch_deg = 120"},
       {quoted("none.bin") + quoted("out.pcd"), 1, "none.bin: No such file"},
       {quoted("short.bin") + quoted("out.pcd"), 1, "short.bin: offset 0"},
       {quoted("a.ply") + quoted("out.pcd"), 1, "a.ply"},

@@ -12,6 +12,8 @@
 #include "temporary_folder.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 std::string contentOf(const std::filesystem::path& path) {

@@ -7,6 +7,8 @@
 #include <string>
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 class InstructionSetTest : public testing::Test {

@@ -6,8 +6,8 @@
 #include "saw_ndt/map/weighted_map_builder.h"
 #include "saw_ndt/version.h"
 
-// Localizes a scan of a room's corner in a map of that corner, with the core library alone. Exit code 0: found to within
-// 5 mm.
+// Localizes a scan of a room's corner in a map of that corner, with the core library alone. Exit code 0: found to
+// within 5 mm.
 int main() {
   std::vector<saw_ndt::LidarPoint> corner, scan;
   const Eigen::Vector3f T_map_scan(0.1F, -0.05F, 0.05F);

@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 TEST(Statistics, PercentileInterpolatesLinearly) {

@@ -34,7 +34,7 @@ TEST(Trajectory, TumRoundTrips) {
   const std::vector<StampedPose> written = randomTrajectory();
   writeTumTrajectory(path, written);
   const Trajectory read = readTrajectory(path);
-  EXPECT_EQ(read.format, TrajectoryFormat::Tum);
+  EXPECT_EQ(read.format, TrajectoryFormat::TUM);
   ASSERT_EQ(read.poses.size(), written.size());
   for (std::size_t i = 0; i < written.size(); ++i) {
     EXPECT_NEAR(read.poses[i].stamp_s, written[i].stamp_s, 1e-6);
@@ -50,7 +50,7 @@ TEST(Trajectory, KittiRoundTrips) {
   for (const StampedPose& pose : randomTrajectory()) written.push_back(pose.T_map_body);
   writeKittiTrajectory(path, written);
   const Trajectory read = readTrajectory(path);
-  EXPECT_EQ(read.format, TrajectoryFormat::Kitti);
+  EXPECT_EQ(read.format, TrajectoryFormat::KITTI);
   ASSERT_EQ(read.poses.size(), written.size());
   for (std::size_t i = 0; i < written.size(); ++i) {
     EXPECT_NEAR(read.poses[i].stamp_s, kNominalScanPeriod_s * static_cast<double>(i), 1e-12);

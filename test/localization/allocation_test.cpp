@@ -51,7 +51,7 @@ TEST(SourceVoxelFilter, AllocatesNothingInTheSteadyState) {
   scan.xyz = xyz.data();
   scan.stride = 3;
   scan.size = xyz.size() / 3;
-  const std::vector<StructuralLabel> labels(scan.size, StructuralLabel::NonGround);
+  const std::vector<StructuralLabel> labels(scan.size, StructuralLabel::NON_GROUND);
   SourceVoxelFilter filter(0.2);
   std::size_t before = 0;
   for (int round = 0; round < 3; ++round) {

@@ -10,13 +10,15 @@
 #include "registration/score_function.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 /// Every point against every voxel: a voxel counts that is the point's own or shares a face with it.
 Likelihoods byBruteForce(const WeightedVoxelMap& map, const SourcePoints& source, const Eigen::Isometry3d& T_map_source,
                          double outlier_ratio) {
   const std::vector<VoxelStatistics> voxels = map.statistics();
-  const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, outlier_ratio, map.resolution());
+  const ScoreParameters score = scoreParameters(ScoreFunction::MAGNUSSON, outlier_ratio, map.resolution());
   double all = 0.0, non_ground = 0.0, best_sum = 0.0;
   int non_ground_points = 0, matched_points = 0;
   for (std::size_t i = 0; i < source.size(); ++i) {
@@ -35,7 +37,7 @@ Likelihoods byBruteForce(const WeightedVoxelMap& map, const SourcePoints& source
     all += total;
     best_sum += best;
     matched_points += matched ? 1 : 0;
-    if (source.label[i] == static_cast<std::uint8_t>(StructuralLabel::Ground)) continue;
+    if (source.label[i] == static_cast<std::uint8_t>(StructuralLabel::GROUND)) continue;
     non_ground += total;
     ++non_ground_points;
   }

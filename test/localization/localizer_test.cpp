@@ -12,6 +12,8 @@
 #include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;

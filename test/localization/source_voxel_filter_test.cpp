@@ -13,6 +13,8 @@
 #include "expect_throws.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 struct Point {
@@ -110,10 +112,10 @@ TEST(SourceVoxelFilter, GrowsBeyondItsFirstTable) {
 
 TEST(SourceVoxelFilter, LabelsOfOneVoxelStayApart) {
   SourceVoxelFilter filter(1.0);
-  const SourcePoints source = filtered(filter, {{{0.2F, 0.2F, 0.2F}, StructuralLabel::NonGround},
-                                                {{0.4F, 0.4F, 0.4F}, StructuralLabel::Ground},
-                                                {{0.6F, 0.2F, 0.2F}, StructuralLabel::NonGround},
-                                                {{0.8F, 0.8F, 0.8F}, StructuralLabel::Noise}});
+  const SourcePoints source = filtered(filter, {{{0.2F, 0.2F, 0.2F}, StructuralLabel::NON_GROUND},
+                                                {{0.4F, 0.4F, 0.4F}, StructuralLabel::GROUND},
+                                                {{0.6F, 0.2F, 0.2F}, StructuralLabel::NON_GROUND},
+                                                {{0.8F, 0.8F, 0.8F}, StructuralLabel::NOISE}});
   EXPECT_EQ(source.label, (std::vector<std::uint8_t>{2, 1, 0}));
   EXPECT_FLOAT_EQ(source.x[0], 0.4F);
   EXPECT_FLOAT_EQ(source.x[1], 0.4F);
@@ -122,9 +124,9 @@ TEST(SourceVoxelFilter, LabelsOfOneVoxelStayApart) {
 
 TEST(SourceVoxelFilter, ZeroIsNotInsideBothItsNeighbours) {
   SourceVoxelFilter filter(1.0);
-  const SourcePoints source = filtered(filter, {{{-0.25F, -0.25F, -0.25F}, StructuralLabel::Ground},
-                                                {{0.25F, 0.25F, 0.25F}, StructuralLabel::Ground},
-                                                {{-0.75F, -0.25F, -0.25F}, StructuralLabel::Ground}});
+  const SourcePoints source = filtered(filter, {{{-0.25F, -0.25F, -0.25F}, StructuralLabel::GROUND},
+                                                {{0.25F, 0.25F, 0.25F}, StructuralLabel::GROUND},
+                                                {{-0.75F, -0.25F, -0.25F}, StructuralLabel::GROUND}});
   ASSERT_EQ(source.size(), 2U);
   EXPECT_FLOAT_EQ(source.x[0], -0.5F);
   EXPECT_FLOAT_EQ(source.y[0], -0.25F);
@@ -140,7 +142,7 @@ TEST(SourceVoxelFilter, SizeZeroKeepsThePoints) {
     EXPECT_EQ(source.labelled, labelled);
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_EQ(Eigen::Vector3f(source.x[i], source.y[i], source.z[i]), points[i].position);
-      const StructuralLabel label = labelled ? points[i].label : StructuralLabel::NonGround;
+      const StructuralLabel label = labelled ? points[i].label : StructuralLabel::NON_GROUND;
       EXPECT_EQ(source.label[i], static_cast<std::uint8_t>(label));
     }
   }
@@ -158,10 +160,10 @@ TEST(SourceVoxelFilter, PassesOverWhatIsNotFiniteOrTooFar) {
         for (int axis = 0; axis < 3; ++axis) {
           if ((axes >> axis & 1) != 0) point[axis] = value;
         }
-        points.push_back({point, StructuralLabel::Ground});
+        points.push_back({point, StructuralLabel::GROUND});
       }
     }
-    points.push_back({{1.0F, 2.0F, 3.0F}, StructuralLabel::Ground});
+    points.push_back({{1.0F, 2.0F, 3.0F}, StructuralLabel::GROUND});
     SourceVoxelFilter filter(voxel_size_m);
     const SourcePoints source = filtered(filter, points);
     ASSERT_EQ(source.size(), 1U) << voxel_size_m;
@@ -185,7 +187,7 @@ TEST(SourceVoxelFilter, FarVoxelsAreApart) {
     for (const float place : {524287.5F, 524286.5F, -524286.5F, -524285.5F, 0.5F}) {
       Eigen::Vector3f point(0.5F, 0.5F, 0.5F);
       point[axis] = place;
-      points.push_back({point, StructuralLabel::Noise});
+      points.push_back({point, StructuralLabel::NOISE});
     }
   }
   SourceVoxelFilter filter(1.0);
@@ -205,8 +207,8 @@ TEST(SourceVoxelFilter, TakesWhatIsSelectedIntoTheBaseFrame) {
   std::vector<Point> selected;
   GroundSampler sampler({selection.ground_ratio});
   for (const Point& point : points) {
-    if (point.label == StructuralLabel::Noise) continue;
-    if (point.label == StructuralLabel::Ground && !sampler.keepsNext()) continue;
+    if (point.label == StructuralLabel::NOISE) continue;
+    if (point.label == StructuralLabel::GROUND && !sampler.keepsNext()) continue;
     selected.push_back({selection.T_base_lidar.cast<float>() * point.position, point.label});
   }
   for (const double voxel_size_m : {0.2, 0.0}) {
@@ -233,7 +235,7 @@ TEST(SourceVoxelFilter, EveryInstructionSetGivesTheSameBits) {
 
 TEST(SourceVoxelFilter, RefusesLabelsOfAnotherScan) {
   const Scan scan(randomPoints(12, 10, 1.0F));
-  const std::vector<StructuralLabel> few(9, StructuralLabel::Ground);
+  const std::vector<StructuralLabel> few(9, StructuralLabel::GROUND);
   SourceVoxelFilter filter(0.2);
   expectThrows<std::invalid_argument>([&] { filter.filter(scan.view(), &few); }, {"labels: 9 for 10 points"});
   SourceSelection selection;

@@ -14,6 +14,8 @@
 #include "temporary_folder.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using internal::inMapOrder;
@@ -190,7 +192,7 @@ TEST_F(MapFile, TellsHowTheMapWasMade) {
   SegmentationOptions segmentation;
   segmentation.sensor = SensorModel::named("OS-128");
   segmentation.mounting_pitch_deg = 0.1;
-  segmentation.ground.rule = GroundRule::Inclination;
+  segmentation.ground.rule = GroundRule::INCLINATION;
   WeightedMapBuilder builder(1.0, segmentation);
   addCloud(builder, mixedCloud(1, 1000), Eigen::Isometry3d::Identity());
   const std::string bytes = bytesOf(builder.build());
@@ -382,10 +384,10 @@ TEST_F(MapFile, LeavesNothingBehindWhereItCannotWrite) {
 TEST_F(MapFile, EntriesAreOrderedByTileThenVoxelThenLabel) {
   const auto entry = [](int x, int y, int z, StructuralLabel label) { return LabelledVoxelSums{{x, y, z}, label, {}}; };
   const std::vector<LabelledVoxelSums> ordered{
-      entry(-1, 0, 0, StructuralLabel::Ground), entry(63, 0, 0, StructuralLabel::Noise),
-      entry(63, 0, 0, StructuralLabel::Ground), entry(0, 1, 0, StructuralLabel::Noise),
-      entry(0, 0, 1, StructuralLabel::Noise),   entry(64, 0, 0, StructuralLabel::Noise),
-      entry(0, 64, 0, StructuralLabel::Noise),  entry(-65, -65, 64, StructuralLabel::Noise),
+      entry(-1, 0, 0, StructuralLabel::GROUND), entry(63, 0, 0, StructuralLabel::NOISE),
+      entry(63, 0, 0, StructuralLabel::GROUND), entry(0, 1, 0, StructuralLabel::NOISE),
+      entry(0, 0, 1, StructuralLabel::NOISE),   entry(64, 0, 0, StructuralLabel::NOISE),
+      entry(0, 64, 0, StructuralLabel::NOISE),  entry(-65, -65, 64, StructuralLabel::NOISE),
   };
   for (std::size_t i = 0; i < ordered.size(); ++i) {
     for (std::size_t j = 0; j < ordered.size(); ++j)

@@ -5,6 +5,8 @@
 #include "saw_ndt/common/sensor_model.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using internal::MetadataFault;
@@ -23,7 +25,7 @@ SegmentationOptions unusualOptions() {
   SegmentationOptions options;
   options.sensor = {"Sensor = \"7\" of Zürich ", 777, {1.0 / 3.0, 0.1 + 0.2, -5e-324, -1e-300, -77.7}};
   options.mounting_pitch_deg = 2.0 / 3.0;
-  options.ground.rule = GroundRule::Inclination;
+  options.ground.rule = GroundRule::INCLINATION;
   options.ground.inclination_limit_deg = 10.1;
   options.ground.inclination_top_elevation_deg = -2.2;
   options.ground.sensor_height_m = 1.0 / 7.0;
@@ -58,7 +60,7 @@ TEST(MapMetadata, EveryFieldComesBackBitForBit) {
     EXPECT_EQ(read.segmentation->sensor.elevations_deg, options.sensor.elevations_deg);
     EXPECT_EQ(read.segmentation->mounting_pitch_deg, options.mounting_pitch_deg);
     EXPECT_EQ(read.segmentation->ground.smooths, options.ground.smooths);
-    EXPECT_EQ(read.segmentation->components.minimum_rings_tall, options.components.minimum_rings_tall);
+    EXPECT_EQ(read.segmentation->components.min_rings_tall, options.components.min_rings_tall);
     EXPECT_FALSE(firstDifference(*read.segmentation, options));
   }
 }

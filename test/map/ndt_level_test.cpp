@@ -11,6 +11,8 @@
 #include "map_fixtures.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using internal::NdtLevel;

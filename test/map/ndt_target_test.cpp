@@ -8,6 +8,8 @@
 #include "temporary_folder.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 class NdtTargetFile : public ::testing::Test {

@@ -35,7 +35,7 @@ PlainSums pointByPoint(const pcl::PointCloud<PointT>& cloud, const Eigen::Isomet
   for (const PointT& point : cloud) {
     QuantizedPosition position;
     if (!quantize(T_map_cloud * Eigen::Vector3d(point.x, point.y, point.z), 1.0 / resolution_m, position)) continue;
-    auto label = static_cast<std::uint32_t>(StructuralLabel::NonGround);
+    auto label = static_cast<std::uint32_t>(StructuralLabel::NON_GROUND);
     if constexpr (pcl::traits::has_label<PointT>::value) label = point.label;
     plain.sums[{position.voxel.x(), position.voxel.y(), position.voxel.z(), label}].add(position.steps);
     ++plain.point_count;
@@ -176,7 +176,7 @@ TEST(MapOrder, HoldsFromOneEndOfTheCoordinatesToTheOther) {
     std::vector<LabelledVoxelSums> entries;
     for (int i = 0; i < 3000; ++i) {
       const VoxelCoordinate voxel(anywhere(random), anywhere(random), anywhere(random));
-      for (const StructuralLabel label : {StructuralLabel::NonGround, StructuralLabel::Noise}) {
+      for (const StructuralLabel label : {StructuralLabel::NON_GROUND, StructuralLabel::NOISE}) {
         entries.push_back({voxel, label, {}});
         entries.back().sums.add({i, -i, 7});
       }

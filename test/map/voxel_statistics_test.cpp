@@ -38,7 +38,7 @@ TEST(VoxelStatistics, LinearVoxelByHand) {
   // the smallest is 1/64 of the largest and stays.
   const auto voxel = statisticsOf(octahedron(16384, 4096, 2048), 0.8);
   ASSERT_TRUE(voxel);
-  EXPECT_EQ(voxel->structure_class, StructureClass::Linear);
+  EXPECT_EQ(voxel->structure_class, StructureClass::LINEAR);
   EXPECT_DOUBLE_EQ(voxel->weight, 0.6);
   EXPECT_EQ(voxel->point_count, 6U);
   EXPECT_EQ(voxel->mean_from_centre, Eigen::Vector3d::Zero());
@@ -51,7 +51,7 @@ TEST(VoxelStatistics, PlanarVoxelByHand) {
   // sigma as 8 : 6 : 1: f_L = 2/8, f_P = 5/8, f_V = 1/8: planar, alpha 1.25; 0.5 * 1.25 = 0.625.
   const auto voxel = statisticsOf(octahedron(2048, 16384, 12288), 0.5);
   ASSERT_TRUE(voxel);
-  EXPECT_EQ(voxel->structure_class, StructureClass::Planar);
+  EXPECT_EQ(voxel->structure_class, StructureClass::PLANAR);
   EXPECT_DOUBLE_EQ(voxel->mean_confidence, 0.5);
   EXPECT_DOUBLE_EQ(voxel->weight, 0.625);
 }
@@ -60,7 +60,7 @@ TEST(VoxelStatistics, VolumetricVoxelByHand) {
   // sigma as 8 : 7 : 6: f_L = 1/8, f_P = 1/8, f_V = 6/8: volumetric, alpha 1; 0.9 * 1 = 0.9.
   const auto voxel = statisticsOf(octahedron(14336, 12288, 16384), 0.9);
   ASSERT_TRUE(voxel);
-  EXPECT_EQ(voxel->structure_class, StructureClass::Volumetric);
+  EXPECT_EQ(voxel->structure_class, StructureClass::VOLUMETRIC);
   EXPECT_DOUBLE_EQ(voxel->weight, 0.9);
 }
 
@@ -69,9 +69,9 @@ TEST(VoxelStatistics, ClassOfRotatedPointsIsTheSame) {
   const struct {
     Eigen::Vector3d half_axes;
     StructureClass structure_class;
-  } cases[] = {{{16000, 4000, 2000}, StructureClass::Linear},
-               {{16000, 12000, 2000}, StructureClass::Planar},
-               {{16000, 14000, 12000}, StructureClass::Volumetric}};
+  } cases[] = {{{16000, 4000, 2000}, StructureClass::LINEAR},
+               {{16000, 12000, 2000}, StructureClass::PLANAR},
+               {{16000, 14000, 12000}, StructureClass::VOLUMETRIC}};
   for (const auto& c : cases) {
     VoxelSums sums;
     for (int axis = 0; axis < 3; ++axis) {
@@ -90,11 +90,11 @@ TEST(VoxelStatistics, ClassOfRotatedPointsIsTheSame) {
 }
 
 TEST(StructureClassOf, TiesGoToTheFirstOfTheThree) {
-  EXPECT_EQ(structureClass({16.0, 4.0, 0.0}), StructureClass::Linear);  // f_L = f_P = 1/2
-  EXPECT_EQ(structureClass({4.0, 1.0, 4.0}), StructureClass::Planar);   // f_P = f_V = 1/2
-  EXPECT_EQ(structureClass({1.0, 1.0, 1.0}), StructureClass::Volumetric);
-  EXPECT_EQ(structureClass({0.0, 1.0, 0.0}), StructureClass::Linear);
-  EXPECT_EQ(structureClass({1.0, -1e-18, 1.0}), StructureClass::Planar);  // rounding of an exact plane
+  EXPECT_EQ(structureClass({16.0, 4.0, 0.0}), StructureClass::LINEAR);  // f_L = f_P = 1/2
+  EXPECT_EQ(structureClass({4.0, 1.0, 4.0}), StructureClass::PLANAR);   // f_P = f_V = 1/2
+  EXPECT_EQ(structureClass({1.0, 1.0, 1.0}), StructureClass::VOLUMETRIC);
+  EXPECT_EQ(structureClass({0.0, 1.0, 0.0}), StructureClass::LINEAR);
+  EXPECT_EQ(structureClass({1.0, -1e-18, 1.0}), StructureClass::PLANAR);  // rounding of an exact plane
 }
 
 TEST(VoxelStatistics, SmallEigenvaluesAreRaisedAfterTheClassIsFound) {
@@ -102,7 +102,7 @@ TEST(VoxelStatistics, SmallEigenvaluesAreRaisedAfterTheClassIsFound) {
   // be 0.1 and f_P = 0.42: linear.
   const auto voxel = statisticsOf(octahedron(164, 16384, 8520));
   ASSERT_TRUE(voxel);
-  EXPECT_EQ(voxel->structure_class, StructureClass::Planar);
+  EXPECT_EQ(voxel->structure_class, StructureClass::PLANAR);
   const double largest = 0.4 * 0.0625;
   EXPECT_NEAR(voxel->covariance(0, 0), 0.01 * largest, 1e-15);
   EXPECT_NEAR(voxel->covariance(1, 1), largest, 1e-15);
@@ -203,7 +203,7 @@ TEST(VoxelWeights, MeanConfidenceOfMixedLabelsByHand) {
   };
   // Default: (2 * 0.65 + 6 * 1 + 4 * 0.85) / 12 = 10.7 / 12. Planar: sigma_x^2 : sigma_y^2 is 0.6 : 0.72 (sums of
   // squares 3 * 2 * (0.3^2 + 0.1^2) and 8 * 0.3^2), f_L = 1 - sqrt(0.6 / 0.72) = 0.09.
-  EXPECT_EQ(voxelWith(ConfidenceOptions()).structure_class, StructureClass::Planar);
+  EXPECT_EQ(voxelWith(ConfidenceOptions()).structure_class, StructureClass::PLANAR);
   EXPECT_EQ(voxelWith(ConfidenceOptions()).point_count, 12U);
   EXPECT_DOUBLE_EQ(voxelWith(ConfidenceOptions()).mean_confidence, 10.7 / 12.0);
   EXPECT_DOUBLE_EQ(voxelWith(ConfidenceOptions()).weight, 10.7 / 12.0 * 1.25);

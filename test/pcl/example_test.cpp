@@ -12,6 +12,8 @@
 
 // examples/drop_in.cpp, as it stands and as the program of PCL's NDT, on the same two clouds of a street corner.
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 Eigen::Isometry3d printedTransform(const AppResult& result) {

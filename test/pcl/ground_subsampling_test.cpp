@@ -23,7 +23,7 @@ pcl::Indices keptBy(const std::vector<StructuralLabel>& labels, double ratio) {
   GroundSampler sampler({ratio});
   pcl::Indices kept;
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (sampler.keepsNext(labels[i] == StructuralLabel::Ground)) kept.push_back(static_cast<pcl::index_t>(i));
+    if (sampler.keepsNext(labels[i] == StructuralLabel::GROUND)) kept.push_back(static_cast<pcl::index_t>(i));
   }
   return kept;
 }
@@ -50,7 +50,7 @@ TEST(GroundSubsampling, KeepsTheRatioOfGroundAndEveryOtherPoint) {
     std::size_t position = 0;
     for (std::size_t i = 0; i < labels.size(); ++i) {
       bool expected = true;
-      if (labels[i] == StructuralLabel::Ground) {
+      if (labels[i] == StructuralLabel::GROUND) {
         const auto k = static_cast<double>(ground++);
         expected = std::floor((k + 1.0) * ratio) > std::floor(k * ratio);
       }
@@ -59,13 +59,13 @@ TEST(GroundSubsampling, KeepsTheRatioOfGroundAndEveryOtherPoint) {
       position += keeps ? 1 : 0;
     }
     const auto others = static_cast<std::size_t>(std::count_if(
-        labels.begin(), labels.end(), [](StructuralLabel label) { return label != StructuralLabel::Ground; }));
+        labels.begin(), labels.end(), [](StructuralLabel label) { return label != StructuralLabel::GROUND; }));
     EXPECT_EQ(kept.size(), others + static_cast<std::size_t>(std::floor(static_cast<double>(ground) * ratio)));
   }
 }
 
 TEST(GroundSubsampling, HalfIsEveryOtherPointAndTheEndsAreAllOrNone) {
-  const std::vector<StructuralLabel> labels(6, StructuralLabel::Ground);
+  const std::vector<StructuralLabel> labels(6, StructuralLabel::GROUND);
   EXPECT_EQ(keptBy(labels, 0.5), (pcl::Indices{1, 3, 5}));
   EXPECT_EQ(keptBy(labels, 1.0).size(), 6U);
   EXPECT_TRUE(keptBy(labels, 0.0).empty());
@@ -110,7 +110,7 @@ TEST(GroundSubsampling, SetLabelsReplaceTheFieldAndMustMatch) {
   filter.setInputCloud(cloud);
   pcl::Indices kept;
   EXPECT_THROW(filter.filter(kept), std::invalid_argument);
-  filter.setLabels({StructuralLabel::Ground});
+  filter.setLabels({StructuralLabel::GROUND});
   EXPECT_THROW(filter.filter(kept), std::invalid_argument);
   filter.setLabels(labels);
   filter.filter(kept);
@@ -119,7 +119,7 @@ TEST(GroundSubsampling, SetLabelsReplaceTheFieldAndMustMatch) {
 
 TEST(GroundSubsampling, CountsOverTheGivenIndicesAlone) {
   GroundSubsampling<pcl::PointXYZL> filter;
-  filter.setInputCloud(cloudOf(std::vector<StructuralLabel>(10, StructuralLabel::Ground)));
+  filter.setInputCloud(cloudOf(std::vector<StructuralLabel>(10, StructuralLabel::GROUND)));
   filter.setIndices(pcl::make_shared<pcl::Indices>(pcl::Indices{2, 5, 6, 9}));
   pcl::Indices kept;
   filter.filter(kept);

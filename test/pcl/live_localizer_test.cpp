@@ -9,6 +9,8 @@
 #include "temporary_folder.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 TEST(LiveLocalizerExample, FollowsADriveByCloudsAndByArrays) {

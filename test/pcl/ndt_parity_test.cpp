@@ -13,6 +13,8 @@
 #include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
@@ -87,9 +89,9 @@ TEST(PclParity, ScoreGradientAndHessianOnTheSameVoxels) {
   const auto source_cloud = xyzOf(streetCorner(2, 1000));
   pcl_ndt.setInputSource(source_cloud);
   SourcePoints source;
-  for (const auto& p : *source_cloud) source.add(p.x, p.y, p.z, StructuralLabel::NonGround);
+  for (const auto& p : *source_cloud) source.add(p.x, p.y, p.z, StructuralLabel::NON_GROUND);
   const NdtObjective objective(level, NeighborhoodSearchMethod::RADIUS,
-                               scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0), {});
+                               scoreParameters(ScoreFunction::MAGNUSSON, 0.55, 1.0), {});
   NdtObjective::Workspace workspace;
   std::mt19937 random(9);
   std::uniform_real_distribution<double> uniform(-0.2, 0.2);

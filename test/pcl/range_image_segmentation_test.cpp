@@ -16,6 +16,8 @@ struct PointWithRing {
 POINT_CLOUD_REGISTER_POINT_STRUCT(PointWithRing, (float, x, x)(float, y, y)(float, z, z)(std::uint16_t, ring, ring))
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 SensorModel testSensor() { return SensorModel::evenlySpaced("test", 32, 720, 6.0, -25.0); }
@@ -66,7 +68,7 @@ TEST(RangeImageSegmentation, KeptAndRemovedAreTheInput) {
       EXPECT_FALSE(kept.empty());
       EXPECT_FALSE(filter.getRemovedIndices()->empty());
       for (const pcl::index_t index : kept) {
-        ASSERT_EQ(filter.getLabels()[index] == StructuralLabel::Noise, negative);
+        ASSERT_EQ(filter.getLabels()[index] == StructuralLabel::NOISE, negative);
       }
       pcl::PointCloud<pcl::PointXYZ> output;
       filter.filter(output);
@@ -90,7 +92,7 @@ TEST(RangeImageSegmentation, PointsThatAreNotSelectedAreNoise) {
   EXPECT_GT(kept.size(), 1000U);
   for (std::size_t i = 0; i < cloud->size(); ++i) {
     if (i % cloud->width >= cloud->width / 2) {
-      ASSERT_EQ(filter.getLabels()[i], StructuralLabel::Noise);
+      ASSERT_EQ(filter.getLabels()[i], StructuralLabel::NOISE);
     }
   }
 }
@@ -108,7 +110,7 @@ TEST(RangeImageSegmentation, KeepsOrganizedCloudsOrganized) {
     ASSERT_EQ(output.width, cloud->width);
     ASSERT_EQ(output.height, cloud->height);
     for (std::size_t i = 0; i < output.size(); ++i) {
-      if (filter.getLabels()[i] != StructuralLabel::Noise) {
+      if (filter.getLabels()[i] != StructuralLabel::NOISE) {
         ASSERT_EQ(output[i].x, (*cloud)[i].x);
       } else if (std::isnan(value)) {
         ASSERT_TRUE(std::isnan(output[i].x));

@@ -9,6 +9,8 @@
 #include "saw_ndt/pcl/cloud_view.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 using Labelled = pcl::PointCloud<pcl::PointXYZL>;

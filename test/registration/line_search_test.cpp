@@ -6,6 +6,8 @@
 #include <random>
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 // Functions of the kind that More and Thuente test with: a valley at a known place.

@@ -6,6 +6,8 @@
 #include "registration/registration_fixtures.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 NdtTarget cornerMap(const Eigen::Isometry3d& T_map_corner = Eigen::Isometry3d::Identity()) {

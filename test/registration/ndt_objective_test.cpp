@@ -6,6 +6,8 @@
 #include "temporary_folder.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6d& step) {
@@ -36,7 +38,7 @@ TEST_P(NdtObjectiveDerivatives, AgreeWithCentralDifferences) {
   const NdtTarget map = exactTargetOf(streetCorner(1));
   const SourcePoints all = sourceOf(streetCorner(2, 300));
   const PairWeighting weighting{GetParam().weighted, 0.1, map.weighting().confidence};
-  const NdtObjective objective(map.fine(), GetParam().method, scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0),
+  const NdtObjective objective(map.fine(), GetParam().method, scoreParameters(ScoreFunction::MAGNUSSON, 0.55, 1.0),
                                weighting);
   NdtObjective::Workspace workspace;
   std::mt19937 random(3);
@@ -69,7 +71,7 @@ TEST_P(NdtObjectiveDerivatives, InEulerAnglesAgreeWithCentralDifferences) {
   const NdtTarget map = exactTargetOf(streetCorner(1));
   const SourcePoints all = sourceOf(streetCorner(2, 300));
   const PairWeighting weighting{GetParam().weighted, 0.1, map.weighting().confidence};
-  const NdtObjective objective(map.fine(), GetParam().method, scoreParameters(ScoreFunction::Paper, 0.55, 1.0),
+  const NdtObjective objective(map.fine(), GetParam().method, scoreParameters(ScoreFunction::PAPER, 0.55, 1.0),
                                weighting);
   NdtObjective::Workspace workspace;
   std::mt19937 random(4);
@@ -185,7 +187,7 @@ TEST(NdtObjective, WeightOfAPairIsWhatEquationOneSays) {
   ASSERT_EQ(map.fine().size(), 1u);
   SourcePoints source;
   source.labelled = true;
-  source.add(0.5f, 0.5f, 0.53125f, StructuralLabel::NonGround);
+  source.add(0.5f, 0.5f, 0.53125f, StructuralLabel::NON_GROUND);
   NdtObjective::Workspace workspace;
   const NdtObjective objective(map.fine(), NeighborhoodSearchMethod::DIRECT1, {1.0, 1.0},
                                {true, 0.1, ConfidenceOptions::paper()});
@@ -205,7 +207,7 @@ TEST(NdtObjective, FarFromTheOriginNothingIsLost) {
   std::mt19937 random(8);
   const Eigen::Isometry3d T = randomPose(random, 0.2, 0.05);
   NdtObjective::Workspace workspace;
-  const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0);
+  const ScoreParameters score = scoreParameters(ScoreFunction::MAGNUSSON, 0.55, 1.0);
   const NdtDerivatives near_result =
       NdtObjective(near_map.fine(), NeighborhoodSearchMethod::DIRECT7, score, {}).evaluate(source, T, 1, workspace);
   const NdtDerivatives far_result = NdtObjective(far_map.fine(), NeighborhoodSearchMethod::DIRECT7, score, {})

@@ -34,10 +34,10 @@ inline pcl::PointCloud<pcl::PointXYZL> streetCorner(unsigned seed, int points_pe
     cloud.push_back(point);
   };
   for (int i = 0; i < points_per_surface; ++i) {
-    add(along(random), along(random), 0.03f + noise(random), StructuralLabel::Ground);
-    add(along(random), 5.4f + noise(random), up(random), StructuralLabel::NonGround);
-    add(-4.3f + noise(random), along(random), up(random), StructuralLabel::NonGround);
-    if (i % 10 == 0) add(2.2f + noise(random), -1.7f + noise(random), up(random), StructuralLabel::NonGround);
+    add(along(random), along(random), 0.03f + noise(random), StructuralLabel::GROUND);
+    add(along(random), 5.4f + noise(random), up(random), StructuralLabel::NON_GROUND);
+    add(-4.3f + noise(random), along(random), up(random), StructuralLabel::NON_GROUND);
+    if (i % 10 == 0) add(2.2f + noise(random), -1.7f + noise(random), up(random), StructuralLabel::NON_GROUND);
   }
   return cloud;
 }
@@ -46,7 +46,7 @@ inline SourcePoints sourceOf(const pcl::PointCloud<pcl::PointXYZL>& cloud, bool 
   SourcePoints source;
   source.labelled = labelled;
   for (const auto& p : cloud) {
-    source.add(p.x, p.y, p.z, labelled ? static_cast<StructuralLabel>(p.label) : StructuralLabel::NonGround);
+    source.add(p.x, p.y, p.z, labelled ? static_cast<StructuralLabel>(p.label) : StructuralLabel::NON_GROUND);
   }
   return source;
 }

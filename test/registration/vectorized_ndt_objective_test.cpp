@@ -11,6 +11,8 @@
 #include "registration/registration_fixtures.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 class VectorizedNdtObjectiveTest : public testing::Test {
@@ -41,7 +43,7 @@ constexpr double kTolerance = 2e-5;
 TEST_P(VectorizedNdtObjectiveModes, AgreesWithDoublePrecision) {
   limitInstructionSet(GetParam().instruction_set);
   const NdtTarget map = exactTargetOf(streetCorner(1));
-  const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0);
+  const ScoreParameters score = scoreParameters(ScoreFunction::MAGNUSSON, 0.55, 1.0);
   const PairWeighting weighting{GetParam().weighted, 0.3, map.weighting().confidence};
   const NdtObjective expected_objective(map.fine(), GetParam().method, score, weighting);
   const VectorizedNdtObjective objective(map.fine(), GetParam().method, score, weighting);
@@ -122,7 +124,7 @@ TEST_F(VectorizedNdtObjectiveTest, FarFromTheOriginNothingIsLost) {
   OrderedSource source = ordered(sourceOf(streetCorner(2, 500)));
   std::mt19937 random(8);
   const Eigen::Isometry3d T = randomPose(random, 0.2, 0.05);
-  const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0);
+  const ScoreParameters score = scoreParameters(ScoreFunction::MAGNUSSON, 0.55, 1.0);
   const auto evaluate = [&](const NdtTarget& map, const Eigen::Isometry3d& pose) {
     return VectorizedNdtObjective(map.fine(), NeighborhoodSearchMethod::DIRECT7, score, {})
         .evaluate(source, pose, 1, workspace_);
@@ -149,10 +151,10 @@ TEST_F(VectorizedNdtObjectiveTest, PointsFarOutAreHarmless) {
   const SourcePoints near_points = sourceOf(streetCorner(2, 300));
   SourcePoints with_far_points = near_points;
   for (const float far : {1e5F, 3e9F, 1e20F, std::numeric_limits<float>::max()}) {
-    with_far_points.add(far, -far, 0.1F * far, StructuralLabel::NonGround);
-    with_far_points.add(-far, 0.0F, far, StructuralLabel::Ground);
+    with_far_points.add(far, -far, 0.1F * far, StructuralLabel::NON_GROUND);
+    with_far_points.add(-far, 0.0F, far, StructuralLabel::GROUND);
   }
-  const ScoreParameters score = scoreParameters(ScoreFunction::Magnusson, 0.55, 1.0);
+  const ScoreParameters score = scoreParameters(ScoreFunction::MAGNUSSON, 0.55, 1.0);
   const VectorizedNdtObjective objective(map.fine(), NeighborhoodSearchMethod::DIRECT26, score, {});
   for (const InstructionSet set : kInstructionSets) {
     limitInstructionSet(set);

@@ -11,6 +11,8 @@
 #include "temporary_folder.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 class BenchmarkTest : public ::testing::Test {

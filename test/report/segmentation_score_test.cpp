@@ -9,9 +9,9 @@
 namespace saw_ndt {
 namespace {
 
-constexpr auto kNoise = StructuralLabel::Noise;
-constexpr auto kGround = StructuralLabel::Ground;
-constexpr auto kOther = StructuralLabel::NonGround;
+constexpr auto kNoise = StructuralLabel::NOISE;
+constexpr auto kGround = StructuralLabel::GROUND;
+constexpr auto kOther = StructuralLabel::NON_GROUND;
 
 TEST(SegmentationScore, KnowsTheGroundClasses) {
   std::vector<int> ground;

@@ -5,6 +5,8 @@
 #include "segmentation/synthetic_scan.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 TEST(ScanSegmenter, AllocatesNothingInTheSteadyState) {

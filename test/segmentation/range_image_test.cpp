@@ -10,6 +10,8 @@
 #include "segmentation/synthetic_scan.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 const float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -36,7 +38,7 @@ TEST(RangeImage, RecoversRingsFromFileOrderForEverySensor) {
     const auto cloud = ringOrderedScan(sensor, patchyRange);
     RangeImage image;
     image.project(viewOf(cloud), sensor);
-    EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::FileOrder) << name;
+    EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::FILE_ORDER) << name;
     expectRowsAndColumns(image, sensor, patchyRange);
   }
 }
@@ -49,7 +51,7 @@ TEST(RangeImage, RingsWithoutReturnsDoNotShiftTheOthers) {
   const auto cloud = ringOrderedScan(sensor, range_at);
   RangeImage image;
   image.project(viewOf(cloud), sensor);
-  EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::FileOrder);
+  EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::FILE_ORDER);
   expectRowsAndColumns(image, sensor, range_at);
 }
 
@@ -65,7 +67,7 @@ TEST(RangeImage, PointRoundedOntoTheSeamStaysInItsRing) {
   }
   RangeImage image;
   image.project(viewOf(cloud), sensor);
-  ASSERT_EQ(image.verticalIndexSource(), VerticalIndexSource::FileOrder);
+  ASSERT_EQ(image.verticalIndexSource(), VerticalIndexSource::FILE_ORDER);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     ASSERT_EQ(image.pixelOfPoint()[i] / sensor.columns, static_cast<int>(i / (ring.width + 1))) << i;
   }
@@ -84,7 +86,7 @@ TEST(RangeImage, ShuffledPointsFallBackToTheElevationTable) {
   image.project(viewOf(ordered), sensor);
   const std::vector<std::int32_t> expected = image.pixelOfPoint();
   image.project(viewOf(shuffled), sensor);
-  EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::ElevationTable);
+  EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::ELEVATION_TABLE);
   for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(image.pixelOfPoint()[i], expected[order[i]]);
 }
 
@@ -97,7 +99,7 @@ TEST(RangeImage, FiringOrderIsNotTakenForRingOrder) {
   }
   RangeImage image;
   image.project(viewOf(cloud), sensor);
-  EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::ElevationTable);
+  EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::ELEVATION_TABLE);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     ASSERT_EQ(image.pixelOfPoint()[i] / sensor.columns, static_cast<int>(i % sensor.rows()));
   }
@@ -118,7 +120,7 @@ TEST(RangeImage, TakesRingNumbersFromTopOrBottom) {
     ScanView view = viewOf(cloud);
     view.rings = rings.data();
     image.project(view, sensor);
-    EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::RingField);
+    EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::RING_FIELD);
     EXPECT_EQ(image.pixelOfPoint(), expected);
     rings.back() = 16;
     EXPECT_THROW(image.project(view, sensor), std::invalid_argument);
@@ -132,7 +134,7 @@ TEST(RangeImage, TakesTheRowsOfAnOrganizedCloudFromTopOrBottom) {
     if (upside_down) std::reverse(cloud.begin(), cloud.end());
     RangeImage image;
     image.project(viewOf(cloud), sensor);
-    EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::OrganizedRow);
+    EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::ORGANIZED_ROW);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const auto pixel = static_cast<std::int32_t>(upside_down ? cloud.size() - 1 - i : i);
       ASSERT_EQ(image.pixelOfPoint()[i], std::isfinite(cloud[i].x) ? pixel : RangeImage::kNoPixel);

@@ -75,7 +75,7 @@ TEST_P(RealSequence, EveryRingIsRecovered) {
     const auto points = readAll<float>(file);
     const ScanView scan = viewOf(points);
     image.project(scan, sensor);
-    ASSERT_EQ(image.verticalIndexSource(), VerticalIndexSource::FileOrder) << file;
+    ASSERT_EQ(image.verticalIndexSource(), VerticalIndexSource::FILE_ORDER) << file;
     std::vector<std::vector<std::size_t>> rings(64);
     int row_before = 0;
     for (std::size_t i = 0; i < scan.size; ++i) {
@@ -124,9 +124,9 @@ TEST_P(RealSequence, LabelsAreReproducedAndLeaveMostPointsTheirUse) {
     const auto share = [&](StructuralLabel label) {
       return static_cast<double>(std::count(labels.begin(), labels.end(), label)) / size;
     };
-    EXPECT_GT(share(StructuralLabel::Ground), 0.3) << file;
-    EXPECT_LT(share(StructuralLabel::Ground), 0.85) << file;
-    EXPECT_LT(share(StructuralLabel::Noise), 0.55) << file;
+    EXPECT_GT(share(StructuralLabel::GROUND), 0.3) << file;
+    EXPECT_LT(share(StructuralLabel::GROUND), 0.85) << file;
+    EXPECT_LT(share(StructuralLabel::NOISE), 0.55) << file;
   }
 }
 
@@ -141,7 +141,7 @@ TEST(RealGround, AgreesWithTheLabelsOfPeople) {
     GroundRule rule;
     double f1;
   };
-  for (const Limit& limit : {Limit{GroundRule::Inclination, 0.89}, Limit{GroundRule::Growing, 0.96}}) {
+  for (const Limit& limit : {Limit{GroundRule::INCLINATION, 0.89}, Limit{GroundRule::GROWING, 0.96}}) {
     GroundScore total;
     for (const char* sequence : {"00", "01", "03"}) {
       total += groundScoreOf(sequence, limit.rule);

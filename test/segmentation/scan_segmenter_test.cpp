@@ -11,6 +11,8 @@
 #include "segmentation/synthetic_scan.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 // One degree between rows, half a degree between columns; row 6 looks level ahead.
@@ -37,9 +39,9 @@ double sceneRange(int row, int column) {
 }
 
 StructuralLabel sceneLabel(int row, int column) {
-  if (!std::isfinite(sceneRange(row, column))) return StructuralLabel::Noise;
-  if (row == kSpeckleRow && column == kSpeckleColumn) return StructuralLabel::Noise;
-  return isWall(row, column) ? StructuralLabel::NonGround : StructuralLabel::Ground;
+  if (!std::isfinite(sceneRange(row, column))) return StructuralLabel::NOISE;
+  if (row == kSpeckleRow && column == kSpeckleColumn) return StructuralLabel::NOISE;
+  return isWall(row, column) ? StructuralLabel::NON_GROUND : StructuralLabel::GROUND;
 }
 
 SegmentationOptions testOptions(GroundRule rule) {
@@ -129,7 +131,7 @@ TEST_P(BothRules, PointsThatAreNotFiniteAreNoise) {
   ScanSegmenter segmenter(testOptions(GetParam()));
   std::vector<StructuralLabel> labels;
   segmenter.segment(viewOf(scan), labels);
-  EXPECT_EQ(std::count(labels.begin(), labels.end(), StructuralLabel::Noise),
+  EXPECT_EQ(std::count(labels.begin(), labels.end(), StructuralLabel::NOISE),
             static_cast<std::ptrdiff_t>(labels.size()));
 }
 
@@ -175,13 +177,13 @@ TEST_P(BothRules, LabelsDependOnNeitherThreadsNorInstructionSet) {
 TEST(ComponentFilter, FindsWhatFloodFillingFinds) {
   const SensorModel sensor = testSensor();
   const auto scan = organizedScan(sensor, roughRange);
-  ScanSegmenter segmenter(testOptions(GroundRule::Growing));
+  ScanSegmenter segmenter(testOptions(GroundRule::GROWING));
   std::vector<StructuralLabel> labels;
   segmenter.segment(viewOf(scan), labels, 3);
   const int columns = sensor.columns;
   const RangeImage& image = segmenter.stages().image;
   const auto isObstacle = [&](int pixel) {
-    return image.range()[pixel] > 0.0F && segmenter.stages().pixel_labels[pixel] != StructuralLabel::Ground;
+    return image.range()[pixel] > 0.0F && segmenter.stages().pixel_labels[pixel] != StructuralLabel::GROUND;
   };
   const auto connected = [&](int first, int second, double apart_deg) {
     const double apart = radiansFromDegrees(apart_deg);
@@ -214,7 +216,7 @@ TEST(ComponentFilter, FindsWhatFloodFillingFinds) {
     const bool kept = points >= 30 || (points >= 5 && bottom_row - top_row + 1 >= 3);
     ++(kept ? large : small);
     for (const int pixel : component) {
-      ASSERT_EQ(segmenter.stages().pixel_labels[pixel], kept ? StructuralLabel::NonGround : StructuralLabel::Noise)
+      ASSERT_EQ(segmenter.stages().pixel_labels[pixel], kept ? StructuralLabel::NON_GROUND : StructuralLabel::NOISE)
           << pixel;
     }
   }
@@ -222,9 +224,9 @@ TEST(ComponentFilter, FindsWhatFloodFillingFinds) {
   EXPECT_GT(small, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(ScanSegmenter, BothRules, ::testing::Values(GroundRule::Inclination, GroundRule::Growing),
+INSTANTIATE_TEST_SUITE_P(ScanSegmenter, BothRules, ::testing::Values(GroundRule::INCLINATION, GroundRule::GROWING),
                          [](const ::testing::TestParamInfo<GroundRule>& tested) {
-                           return tested.param == GroundRule::Growing ? "Growing" : "Inclination";
+                           return tested.param == GroundRule::GROWING ? "Growing" : "Inclination";
                          });
 
 // Labels of a wall of the given rows and columns, alone in the sky.
@@ -234,7 +236,7 @@ std::vector<StructuralLabel> labelsOfPatch(int first_row, int rows, int first_co
     const int shifted = (column - first_column + sensor.columns) % sensor.columns;
     return row >= first_row && row < first_row + rows && shifted < columns ? 10.0 : kNoReturn;
   });
-  SegmentationOptions options = testOptions(GroundRule::Inclination);
+  SegmentationOptions options = testOptions(GroundRule::INCLINATION);
   ScanSegmenter segmenter(options);
   std::vector<StructuralLabel> labels;
   segmenter.segment(viewOf(scan), labels);
@@ -242,7 +244,7 @@ std::vector<StructuralLabel> labelsOfPatch(int first_row, int rows, int first_co
 }
 
 std::ptrdiff_t nonGround(const std::vector<StructuralLabel>& labels) {
-  return std::count(labels.begin(), labels.end(), StructuralLabel::NonGround);
+  return std::count(labels.begin(), labels.end(), StructuralLabel::NON_GROUND);
 }
 
 TEST(ComponentFilter, SizeAndRingsDecide) {
@@ -266,7 +268,7 @@ TEST(ComponentFilter, AStepInRangeSeparates) {
     if (row != 2 || column < 10 || column >= 50) return kNoReturn;
     return column < 30 ? 10.0 : 11.0;
   });
-  ScanSegmenter segmenter(testOptions(GroundRule::Growing));
+  ScanSegmenter segmenter(testOptions(GroundRule::GROWING));
   std::vector<StructuralLabel> labels;
   segmenter.segment(viewOf(scan), labels);
   EXPECT_EQ(nonGround(labels), 0);
@@ -282,23 +284,23 @@ TEST(GroundDetection, GroundGoesOnBehindAnObstacleAndUphill) {
     const double level = kSensorHeight / (slope - std::tan(elevation));
     return level > 0.0 && level < 50.0 ? level / std::cos(elevation) : kNoReturn;
   };
-  ScanSegmenter segmenter(testOptions(GroundRule::Growing));
+  ScanSegmenter segmenter(testOptions(GroundRule::GROWING));
   std::vector<StructuralLabel> labels;
   segmenter.segment(viewOf(organizedScan(sensor, range_at)), labels);
   for (int row = 0; row < sensor.rows(); ++row) {
     for (int column = 70; column < 700; ++column) {
       if (!std::isfinite(range_at(row, column))) continue;
-      ASSERT_EQ(labels[row * sensor.columns + column], StructuralLabel::Ground) << row << " " << column;
+      ASSERT_EQ(labels[row * sensor.columns + column], StructuralLabel::GROUND) << row << " " << column;
     }
     for (int column = 5; column < 55; ++column) {
       if (row >= 17 || !std::isfinite(range_at(row, column))) continue;
-      ASSERT_EQ(labels[row * sensor.columns + column], StructuralLabel::Ground) << row << " " << column;
+      ASSERT_EQ(labels[row * sensor.columns + column], StructuralLabel::GROUND) << row << " " << column;
     }
   }
 }
 
 TEST(GroundDetection, MountingPitchIsTakenOut) {
-  for (const GroundRule rule : {GroundRule::Inclination, GroundRule::Growing}) {
+  for (const GroundRule rule : {GroundRule::INCLINATION, GroundRule::GROWING}) {
     const SensorModel sensor = testSensor();
     SegmentationOptions options = testOptions(rule);
     options.mounting_pitch_deg = 15.0;
@@ -317,7 +319,7 @@ TEST(GroundDetection, MountingPitchIsTakenOut) {
     segmenter.segment(viewOf(scan), labels);
     std::size_t returns = 0;
     for (const auto& point : scan) returns += std::isfinite(point.x) ? 1U : 0U;
-    const auto ground = static_cast<double>(std::count(labels.begin(), labels.end(), StructuralLabel::Ground));
+    const auto ground = static_cast<double>(std::count(labels.begin(), labels.end(), StructuralLabel::GROUND));
     EXPECT_GT(ground, 0.99 * static_cast<double>(returns));
   }
 }
@@ -338,8 +340,8 @@ TEST(SegmentationOptions, NamesTheFieldThatIsWrong) {
   options.ground.step_tolerance_m = -1.0;
   expectNamed(options, "step_tolerance_m");
   options = SegmentationOptions();
-  options.components.minimum_points = 0;
-  expectNamed(options, "minimum_points");
+  options.components.min_points = 0;
+  expectNamed(options, "min_points");
   options = SegmentationOptions();
   options.ground.inclination_limit_deg = std::numeric_limits<double>::quiet_NaN();
   expectNamed(options, "inclination_limit_deg");

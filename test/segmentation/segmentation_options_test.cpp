@@ -27,7 +27,7 @@ TEST(FirstDifference, NamesTheFieldAndBothValues) {
   expectDifference([](Options& o) { o.sensor = SensorModel::named("VLP-16"); }, "sensor.name", "HDL-64E", "VLP-16");
   expectDifference([](Options& o) { o.sensor.columns = 900; }, "sensor.columns", "1800", "900");
   expectDifference([](Options& o) { o.mounting_pitch_deg = -1.5; }, "mounting_pitch_deg", "0", "-1.5");
-  expectDifference([](Options& o) { o.ground.rule = GroundRule::Inclination; }, "ground.rule", "growing",
+  expectDifference([](Options& o) { o.ground.rule = GroundRule::INCLINATION; }, "ground.rule", "growing",
                    "inclination");
   expectDifference([](Options& o) { o.ground.inclination_limit_deg = 9; }, "ground.inclination_limit_deg", "10", "9");
   expectDifference([](Options& o) { o.ground.inclination_top_elevation_deg = 1; },
@@ -39,10 +39,9 @@ TEST(FirstDifference, NamesTheFieldAndBothValues) {
   expectDifference([](Options& o) { o.ground.smooths = false; }, "ground.smooths", "true", "false");
   expectDifference([](Options& o) { o.components.connection_angle_deg = 50; }, "components.connection_angle_deg", "60",
                    "50");
-  expectDifference([](Options& o) { o.components.minimum_points = 1; }, "components.minimum_points", "30", "1");
-  expectDifference([](Options& o) { o.components.minimum_points_tall = 1; }, "components.minimum_points_tall", "5",
-                   "1");
-  expectDifference([](Options& o) { o.components.minimum_rings_tall = 1; }, "components.minimum_rings_tall", "3", "1");
+  expectDifference([](Options& o) { o.components.min_points = 1; }, "components.min_points", "30", "1");
+  expectDifference([](Options& o) { o.components.min_points_tall = 1; }, "components.min_points_tall", "5", "1");
+  expectDifference([](Options& o) { o.components.min_rings_tall = 1; }, "components.min_rings_tall", "3", "1");
 }
 
 TEST(FirstDifference, SeesTheLastBitOfAnElevation) {

@@ -12,6 +12,8 @@
 #include "simple_scene.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 double azimuthOf(const LidarPoint& point) {
@@ -102,7 +104,7 @@ TEST(LidarSimulator, RingsAreRecoveredFromTheOrderOfPoints) {
     const SensorModel& sensor = simulator.options().sensor;
     RangeImage image;
     image.project(viewOf(scan.points), sensor);
-    EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::FileOrder) << name;
+    EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::FILE_ORDER) << name;
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
       ASSERT_EQ(image.pixelOfPoint()[i] / sensor.columns, scan.rings[i]) << name << " point " << i;
     }

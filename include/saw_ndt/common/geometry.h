@@ -28,6 +28,12 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double radiansFromDegrees(double degrees) { return degrees * (kPi / 180.0); }
 constexpr double degreesFromRadians(double radians) { return radians * (180.0 / kPi); }
 
+/// Where the body (the LiDAR, unless stated otherwise) was at a moment.
+struct StampedPose {
+  double stamp_s = 0.0;
+  Eigen::Isometry3d T_map_body = Eigen::Isometry3d::Identity();
+};
+
 /// The position of a point (m), to read and to set.
 inline Eigen::Map<Eigen::Vector3f> positionOf(LidarPoint& point) { return Eigen::Map<Eigen::Vector3f>(&point.x); }
 inline Eigen::Map<const Eigen::Vector3f> positionOf(const LidarPoint& point) {

@@ -10,9 +10,9 @@ namespace saw_ndt {
 
 /// Structure of a LiDAR point as range-image segmentation sees it; stored in the `label` field of pcl::PointXYZL.
 enum class StructuralLabel : std::uint8_t {
-  Noise = 0,      ///< part of no ground and of no component that is large enough
-  Ground = 1,     ///< driveable or walkable surface
-  NonGround = 2,  ///< part of a component that is large enough
+  NOISE = 0,       ///< part of no ground and of no component that is large enough
+  GROUND = 1,      ///< driveable or walkable surface
+  NON_GROUND = 2,  ///< part of a component that is large enough
 };
 
 /// How many values StructuralLabel has.

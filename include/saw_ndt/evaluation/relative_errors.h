@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "saw_ndt/common/export.h"
-#include "saw_ndt/evaluation/pose_pairs.h"
+#include "saw_ndt/evaluation/metrics.h"
 
 namespace saw_ndt {
 

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "saw_ndt/common/export.h"
-#include "saw_ndt/common/stamped_pose.h"
+#include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
 
 /// The two text formats of trajectories.
 enum class TrajectoryFormat {
-  Tum,    ///< stamp tx ty tz qx qy qz qw
-  Kitti,  ///< 12 numbers, the upper 3x4 of the pose row by row; no stamps
+  TUM,    ///< stamp tx ty tz qx qy qz qw
+  KITTI,  ///< 12 numbers, the upper 3x4 of the pose row by row; no stamps
 };
 
 /// The time from a scan to the next where a KITTI trajectory comes without stamps.
@@ -20,7 +20,7 @@ constexpr double kNominalScanPeriod_s = 0.1;
 
 /// A trajectory file's poses, as the file states them, and its format.
 struct Trajectory {
-  TrajectoryFormat format = TrajectoryFormat::Tum;
+  TrajectoryFormat format = TrajectoryFormat::TUM;
   std::vector<StampedPose> poses;  ///< stamps of a KITTI file: position in the file times kNominalScanPeriod_s
 };
 

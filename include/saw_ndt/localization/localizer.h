@@ -66,7 +66,8 @@ using SourceAligner =
 class SAW_NDT_EXPORT Localizer {
  public:
   /// Makes its own target of a map.
-  /// @throws std::invalid_argument where an option does not hold, the map has no labels while the method segments, or its
+  /// @throws std::invalid_argument where an option does not hold, the map has no labels while the method segments, or
+  /// its
   ///         labels were made by other segmentation options than these and allow_other_segmentation is not set
   Localizer(const WeightedVoxelMap& map, const LocalizerOptions& options);
   /// Makes it of a map file, which takes less memory. @throws Error where it is missing or damaged

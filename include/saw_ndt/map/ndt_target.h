@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
 
 namespace saw_ndt {
@@ -25,7 +26,7 @@ enum class CellPrecision {
 /// inverse covariance, mean confidence and weight, on a fine level and on a coarser one whose voxels add up the fine
 /// ones. Derived once from the sums of a map with one weighting, and then apart from them. A value: immutable, cheap to
 /// copy since copies share the levels, and safe to read from many threads.
-class NdtTarget {
+class SAW_NDT_EXPORT NdtTarget {
  public:
   /// A target without voxels.
   NdtTarget();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/map/voxel_sums.h"
 #include "saw_ndt/map/voxel_weighting.h"
 
@@ -17,7 +18,7 @@ struct VoxelStatistics {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();        ///< m^2, its small eigenvalues raised; invertible
   Eigen::Matrix3d inverse_covariance = Eigen::Matrix3d::Zero();
   double mean_confidence = 0.0;  ///< mean structural confidence of the points
-  StructureClass structure_class = StructureClass::Volumetric;
+  StructureClass structure_class = StructureClass::VOLUMETRIC;
   double weight = 0.0;  ///< w_target of the paper
 
   /// The mean in the map frame (m).
@@ -28,14 +29,14 @@ struct VoxelStatistics {
 
 /// The structure class by the square roots of the eigenvalues (any order, negative ones count as 0) of a sample
 /// covariance, as in Section III.B of the paper.
-StructureClass structureClass(const Eigen::Vector3d& eigenvalues);
+SAW_NDT_EXPORT StructureClass structureClass(const Eigen::Vector3d& eigenvalues);
 
 /// The statistics of the points that `sums` hold.
 /// @param mean_confidence  mean of the structural confidences of those points
 /// @param metres_per_step  size of the step in which `sums` count
 /// @return nothing for fewer than min_points_per_voxel points, or when all of them coincide
-std::optional<VoxelStatistics> voxelStatistics(const VoxelCoordinate& voxel, const VoxelSums& sums,
-                                               double mean_confidence, const VoxelWeighting& weighting,
-                                               double metres_per_step);
+SAW_NDT_EXPORT std::optional<VoxelStatistics> voxelStatistics(const VoxelCoordinate& voxel, const VoxelSums& sums,
+                                                              double mean_confidence, const VoxelWeighting& weighting,
+                                                              double metres_per_step);
 
 }  // namespace saw_ndt

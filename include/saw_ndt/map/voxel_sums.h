@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/labels.h"
 
 namespace saw_ndt {
@@ -37,7 +38,7 @@ inline bool quantize(const Eigen::Vector3d& position_m, double inverse_resolutio
 
 /// Count, sums and products of the points of one voxel, in steps from the voxel's centre. Integers make addition exact
 /// and associative: neither the order of points, nor threads, nor merging parts changes a bit. Room for 2^33 points.
-struct VoxelSums {
+struct SAW_NDT_EXPORT VoxelSums {
   std::uint64_t count = 0;
   std::array<std::int64_t, 3> sum{};
   std::array<std::int64_t, 6> product{};  ///< xx xy xz yy yz zz
@@ -71,7 +72,7 @@ struct VoxelSums {
 /// every choice of confidences, and of which labels take part at all.
 struct LabelledVoxelSums {
   VoxelCoordinate voxel;
-  StructuralLabel label = StructuralLabel::NonGround;
+  StructuralLabel label = StructuralLabel::NON_GROUND;
   VoxelSums sums;
 };
 

@@ -3,17 +3,18 @@
 #include <array>
 #include <cstdint>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/labels.h"
 
 namespace saw_ndt {
 
 /// Shape of the points of a voxel, the l_j of the paper: which of f_L, f_P, f_V is the largest.
-enum class StructureClass : std::uint8_t { Linear = 1, Planar = 2, Volumetric = 3 };
+enum class StructureClass : std::uint8_t { LINEAR = 1, PLANAR = 2, VOLUMETRIC = 3 };
 
 /// Structural confidence s of a point by its label, in [0, 1]. A label of confidence 0 takes no part at all: neither in
 /// the statistics of a voxel nor as a source point. The default trusts noise (points of components that are too small
 /// for the segmentation to keep) less than the rest but does not drop it; paper() drops it.
-struct ConfidenceOptions {
+struct SAW_NDT_EXPORT ConfidenceOptions {
   double noise = 0.85;
   double ground = 0.65;     ///< s_g of the paper, 0.5 there
   double non_ground = 1.0;  ///< s_o of the paper
@@ -27,14 +28,14 @@ struct ConfidenceOptions {
     return noise == other.noise && ground == other.ground && non_ground == other.non_ground;
   }
   double of(StructuralLabel label) const {
-    return label == StructuralLabel::Ground ? ground : label == StructuralLabel::NonGround ? non_ground : noise;
+    return label == StructuralLabel::GROUND ? ground : label == StructuralLabel::NON_GROUND ? non_ground : noise;
   }
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
 };
 
 /// How the points of a voxel become its distribution and its weight w_target = mean confidence * alpha(class).
-struct VoxelWeighting {
+struct SAW_NDT_EXPORT VoxelWeighting {
   ConfidenceOptions confidence;
   double linear_alpha = 0.75;          ///< alpha of linear voxels
   double planar_alpha = 1.25;          ///< alpha of planar voxels
@@ -50,8 +51,8 @@ struct VoxelWeighting {
            min_eigenvalue_ratio == other.min_eigenvalue_ratio && coarse_factor == other.coarse_factor;
   }
   double alpha(StructureClass structure_class) const {
-    return structure_class == StructureClass::Linear   ? linear_alpha
-           : structure_class == StructureClass::Planar ? planar_alpha
+    return structure_class == StructureClass::LINEAR   ? linear_alpha
+           : structure_class == StructureClass::PLANAR ? planar_alpha
                                                        : volumetric_alpha;
   }
   /// Throws std::invalid_argument that names the field and its value.

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
@@ -17,7 +18,7 @@ class VoxelSumsTable;
 
 /// Collects labelled points into voxel sums, scan after scan. Memory grows with the voxels met, never with the
 /// points; the result does not depend on the order of scans or on how they were spread over builders.
-class WeightedMapBuilder {
+class SAW_NDT_EXPORT WeightedMapBuilder {
  public:
   /// @param resolution_m  edge of a voxel, positive
   /// @param segmentation  how the labels of the scans were made, where that is known: the map tells it

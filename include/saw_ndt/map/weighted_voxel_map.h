@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/map/voxel_statistics.h"
 #include "saw_ndt/segmentation/segmentation_options.h"
 
 namespace saw_ndt {
 
 /// What a map was made of and how its sums are to be read.
-struct MapOrigin {
+struct SAW_NDT_EXPORT MapOrigin {
   double resolution_m = 1.0;
   bool labelled = false;          ///< whether the points carried structural labels
   std::uint64_t scan_count = 0;   ///< clouds added
@@ -29,7 +30,7 @@ struct MapOrigin {
 /// The store of a map: for every voxel and label the exact integer sums of its points. The distributions, classes and
 /// weights of the paper (Section III.B) follow from them, so that maps can be merged, saved without loss and read with
 /// any confidences. A value: immutable once made, and safe to read from many threads.
-class WeightedVoxelMap {
+class SAW_NDT_EXPORT WeightedVoxelMap {
  public:
   WeightedVoxelMap() = default;
   /// @param entries  each voxel and label at most once, in any order

@@ -17,8 +17,8 @@ enum class NeighborhoodSearchMethod {
 
 /// The function of the squared Mahalanobis distance m that a source-voxel pair scores: amplitude * exp(-d2 / 2 * m).
 enum class ScoreFunction {
-  Magnusson,  ///< eq. 6.8 to 6.10 of Magnusson (2009): a normal distribution mixed with uniform outliers, as PCL
-  Paper,      ///< eq. (2) of the weighted NDT paper: amplitude 1, d2 = 1
+  MAGNUSSON,  ///< eq. 6.8 to 6.10 of Magnusson (2009): a normal distribution mixed with uniform outliers, as PCL
+  PAPER,      ///< eq. (2) of the weighted NDT paper: amplitude 1, d2 = 1
 };
 
 /// How well a pose explains a source, in figures that weights do not change. Each is of Magnusson's score function.
@@ -43,7 +43,7 @@ enum class Arithmetic {
 
 struct SAW_NDT_EXPORT AlignmentOptions {
   NeighborhoodSearchMethod neighborhood_search = NeighborhoodSearchMethod::DIRECT7;
-  ScoreFunction score_function = ScoreFunction::Magnusson;
+  ScoreFunction score_function = ScoreFunction::MAGNUSSON;
   double outlier_ratio = 0.55;    ///< expected share of outliers, in (0, 1)
   bool use_weights = true;        ///< false, or a source or map without labels: classical NDT, W = 1
   double mismatch_penalty = 0.1;  ///< lambda_m of the paper, in [0, 1]
@@ -57,7 +57,7 @@ struct SAW_NDT_EXPORT AlignmentOptions {
   /// Least share of the Gauss-Newton curvature that a Newton step of DAMPED_NEWTON reckons with, in (0, 1]; 1 is
   /// iteratively reweighted least squares, towards 0 is Newton's method, which leaves the basin where it is not
   /// concave.
-  double least_curvature_share = 0.5;
+  double min_curvature_share = 0.5;
 
   bool use_coarse_level = true;         ///< DAMPED_NEWTON: start on the coarse level where the map has one
   int coarse_max_iterations = 30;       ///< steps on the coarse level at most, 1 or more

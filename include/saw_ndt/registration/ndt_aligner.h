@@ -9,8 +9,8 @@
 
 namespace saw_ndt {
 
-/// Registers source points to a target. Holds nothing but scratch memory that calls reuse, which copies do not share: not
-/// to be used by several threads at the same time. The target may be shared.
+/// Registers source points to a target. Holds nothing but scratch memory that calls reuse, which copies do not share:
+/// not to be used by several threads at the same time. The target may be shared.
 class SAW_NDT_EXPORT NdtAligner {
  public:
   NdtAligner();

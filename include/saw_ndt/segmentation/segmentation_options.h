@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/sensor_model.h"
 
 namespace saw_ndt {
@@ -10,17 +11,17 @@ namespace saw_ndt {
 /// How ground is told in a range image.
 enum class GroundRule {
   /// The paper's and LeGO-LOAM's: the line between vertically adjacent pixels is nearly level.
-  Inclination,
+  INCLINATION,
   /// Ground is followed outward from below the sensor, column by column: a return belongs to it where it lies on from
   /// the last ground return and near the height that ground may have reached by then; then neighbours settle what is
   /// doubtful.
-  Growing,
+  GROWING,
 };
 
 /// Options of GroundDetection.
-struct GroundOptions {
+struct SAW_NDT_EXPORT GroundOptions {
   /// Which rule applies.
-  GroundRule rule = GroundRule::Growing;
+  GroundRule rule = GroundRule::GROWING;
 
   /// Inclination: greatest inclination in degrees between vertically adjacent pixels of ground, 0 to 90.
   double inclination_limit_deg = 10.0;
@@ -45,26 +46,26 @@ struct GroundOptions {
 };
 
 /// "growing" or "inclination"
-const char* toString(GroundRule rule);
+SAW_NDT_EXPORT const char* toString(GroundRule rule);
 
 /// How components of pixels that are no ground are told from noise; the defaults are LeGO-LOAM's.
-struct ComponentOptions {
+struct SAW_NDT_EXPORT ComponentOptions {
   /// Neighbours are connected where the line between them makes more than this angle in degrees with the line of sight
   /// to the farther one, above 0 and below 90.
   double connection_angle_deg = 60.0;
   /// A component of this many points or more, all returns of its pixels counted, is kept, at least 1.
-  int minimum_points = 30;
+  int min_points = 30;
   /// So is a smaller one of this many points or more, at least 1, if it spans enough rings.
-  int minimum_points_tall = 5;
+  int min_points_tall = 5;
   /// Rings that such a smaller component must span, at least 1.
-  int minimum_rings_tall = 3;
+  int min_rings_tall = 3;
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
 };
 
 /// Options of ScanSegmenter and RangeImageSegmentation.
-struct SegmentationOptions {
+struct SAW_NDT_EXPORT SegmentationOptions {
   /// Beams and image width of the sensor.
   SensorModel sensor = SensorModel::named("HDL-64E");
   /// Angle in degrees by which the sensor's x axis points below the horizon, -90 to 90.
@@ -86,6 +87,7 @@ struct OptionDifference {
 };
 
 /// The first field, in the order of declaration, in which options differ; nothing where they are the same.
-std::optional<OptionDifference> firstDifference(const SegmentationOptions& first, const SegmentationOptions& second);
+SAW_NDT_EXPORT std::optional<OptionDifference> firstDifference(const SegmentationOptions& first,
+                                                               const SegmentationOptions& second);
 
 }  // namespace saw_ndt

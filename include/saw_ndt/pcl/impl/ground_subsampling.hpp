@@ -33,9 +33,9 @@ void GroundSubsampling<PointT>::setOptions(const GroundSubsamplingOptions& optio
 
 template <typename PointT>
 bool GroundSubsampling<PointT>::isGround(pcl::index_t index) const {
-  if (!labels_.empty()) return labels_[index] == StructuralLabel::Ground;
+  if (!labels_.empty()) return labels_[index] == StructuralLabel::GROUND;
   if constexpr (detail::HasLabel<PointT>::value) {
-    return (*this->input_)[index].label == static_cast<std::uint32_t>(StructuralLabel::Ground);
+    return (*this->input_)[index].label == static_cast<std::uint32_t>(StructuralLabel::GROUND);
   }
   return false;
 }

@@ -54,7 +54,7 @@ void RangeImageSegmentation<PointT>::applyFilter(pcl::Indices& indices) {
   pcl::Indices removed;
   kept.reserve(this->indices_->size());
   for (const pcl::index_t index : *this->indices_) {
-    const bool is_noise = labels_[index] == StructuralLabel::Noise;
+    const bool is_noise = labels_[index] == StructuralLabel::NOISE;
     if (is_noise == this->negative_) {
       kept.push_back(index);
     } else if (this->extract_removed_indices_) {

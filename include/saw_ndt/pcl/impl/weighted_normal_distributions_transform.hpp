@@ -136,7 +136,7 @@ SourcePoints WeightedNormalDistributionsTransform<PointSource, PointTarget, Scal
   for (const auto index : *this->indices_) {
     const PointSource& point = (*this->input_)[static_cast<std::size_t>(index)];
     if (!pcl::isFinite(point)) continue;
-    StructuralLabel label = StructuralLabel::NonGround;
+    StructuralLabel label = StructuralLabel::NON_GROUND;
     if constexpr (kLabelled) {
       if (points.labelled) {
         label = structuralLabelFromValue(point.label);

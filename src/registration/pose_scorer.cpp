@@ -1,0 +1,50 @@
+#include "saw_ndt/registration/pose_scorer.h"
+
+#include <algorithm>
+
+#include "common/executor.h"
+#include "registration/batch_voxel_finder.h"
+#include "registration/likelihoods.h"
+#include "saw_ndt/common/error.h"
+
+namespace saw_ndt {
+
+struct PoseScorer::Parts {
+  NdtTarget target;
+  double outlier_ratio;
+  internal::OrderedSource source;
+  internal::BatchWorkspace workspace;
+};
+
+PoseScorer::PoseScorer(const NdtTarget& target, const SourcePoints& source, double outlier_ratio)
+    : parts_(std::make_unique<Parts>()) {
+  checkOption(outlier_ratio > 0.0 && outlier_ratio < 1.0, "outlier_ratio", outlier_ratio, "between 0 and 1, exclusive");
+  parts_->target = target;
+  parts_->outlier_ratio = outlier_ratio;
+  parts_->source.order(source, target.resolution(), ConfidenceOptions::uniform());
+  // In one order for all poses, that of the source's own frame: voxels are as large in every other.
+  parts_->workspace.prepare(1);
+  const internal::BatchVoxelFinder finder(target.fine(), NeighborhoodSearchMethod::DIRECT1,
+                                          Eigen::Isometry3d::Identity());
+  for (std::size_t first = 0; first < parts_->source.size(); first += internal::kPointsPerBatch) {
+    finder.find(parts_->source, first, std::min(internal::kPointsPerBatch, parts_->source.size() - first),
+                *parts_->workspace.scratch_of_worker.front());
+  }
+}
+
+PoseScorer::~PoseScorer() = default;
+PoseScorer::PoseScorer(PoseScorer&& other) noexcept = default;
+PoseScorer& PoseScorer::operator=(PoseScorer&& other) noexcept = default;
+
+std::vector<Likelihoods> PoseScorer::score(const std::vector<Eigen::Isometry3d>& poses, int threads) {
+  Parts& parts = *parts_;
+  std::vector<Likelihoods> likelihoods(poses.size());
+  parts.workspace.prepare(internal::threadCount(threads));
+  internal::forEachChunk(threads, poses.size(), [&](std::size_t i, int worker) {
+    likelihoods[i] = internal::likelihoodsInOrder(parts.target.fine(), parts.source, poses[i], parts.outlier_ratio,
+                                                  *parts.workspace.scratch_of_worker[static_cast<std::size_t>(worker)]);
+  });
+  return likelihoods;
+}
+
+}  // namespace saw_ndt
