@@ -7,6 +7,8 @@
 
 namespace saw_ndt {
 
+using namespace internal;
+
 const std::vector<InstructionSet>& availableInstructionSets() {
   static const std::vector<InstructionSet> available = [] {
     std::vector<InstructionSet> sets;

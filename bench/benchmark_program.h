@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/instruction_set.h"
-#include "common/threads.h"
+#include "common/executor.h"
 
 namespace saw_ndt {
 

@@ -17,7 +17,7 @@ nlohmann::ordered_json toJson(const KittiRelativeErrors& errors) {
           {"kitti_rotation_deg_per_m", errors.rotation_deg_per_m}};
 }
 
-nlohmann::ordered_json toJson(const DurationStatistics& durations) {
+nlohmann::ordered_json toJson(const internal::DurationStatistics& durations) {
   return {{"mean", durations.mean}, {"p50", durations.p50}, {"p95", durations.p95}, {"max", durations.max}};
 }
 

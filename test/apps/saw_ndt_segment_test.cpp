@@ -12,7 +12,6 @@
 
 namespace saw_ndt {
 
-using namespace internal;
 namespace {
 
 /// Flat ground, and ahead of the sensor a wall across the road, 15 m away and 3 m high.

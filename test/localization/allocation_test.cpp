@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "allocation_counter.h"
+#include "localization/source_voxel_filter.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/localization/localizer.h"
@@ -12,6 +13,8 @@
 #include "temporary_folder.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 TEST(Localizer, AllocatesNothingOfAScansSizeInTheSteadyState) {

@@ -37,7 +37,7 @@ TEST(MotionPrediction, FollowsACircleWhateverTheStamps) {
   for (const double step_s : {0.1, 0.1, 0.05, 0.3, 1e-6, 2.0, 0.1}) {
     prediction.accept(onCircle(last_s + step_s), last_s + step_s);
     last_s += step_s;
-    ASSERT_TRUE(prediction.velocityKnown());
+    ASSERT_TRUE(prediction.state().velocity_known);
     const double tolerance = step_s < 1e-3 ? 1e-6 : 1e-9;  // positions of 1e-15 m over a microsecond
     for (const double ahead_s : {0.0, 0.05, 0.1, 0.7}) {
       expectSamePose(prediction.predict(last_s + ahead_s), onCircle(last_s + ahead_s), tolerance);
@@ -80,13 +80,12 @@ TEST(MotionPrediction, BoundsSpeedAndTurnRate) {
 
 TEST(MotionPrediction, IsTheLastPoseBeforeThereAreTwo) {
   MotionPrediction prediction;
-  expectSamePose(prediction.predict(5.0), Eigen::Isometry3d::Identity(), 1e-15);
   prediction.reset(poseAt(1.0, 1.0, 1.0));
-  EXPECT_FALSE(prediction.timeSinceLast(5.0).has_value());
+  EXPECT_FALSE(prediction.state().timeSinceLast(5.0).has_value());
   expectSamePose(prediction.predict(5.0), poseAt(1.0, 1.0, 1.0), 1e-15);
   prediction.accept(poseAt(2.0, 2.0, 1.0), 5.0);
-  EXPECT_FALSE(prediction.velocityKnown());
-  EXPECT_DOUBLE_EQ(prediction.timeSinceLast(5.5).value(), 0.5);
+  EXPECT_FALSE(prediction.state().velocity_known);
+  EXPECT_DOUBLE_EQ(prediction.state().timeSinceLast(5.5).value(), 0.5);
   expectSamePose(prediction.predict(6.0), poseAt(2.0, 2.0, 1.0), 1e-15);
 }
 
@@ -95,12 +94,12 @@ TEST(MotionPrediction, StampsThatDoNotGrowLeaveTheVelocityUnknown) {
     MotionPrediction prediction;
     prediction.accept(poseAt(0.0, 0.0, 0.0), 0.9);
     prediction.accept(poseAt(1.0, 0.0, 0.0), 1.0);
-    EXPECT_TRUE(prediction.velocityKnown());
+    EXPECT_TRUE(prediction.state().velocity_known);
     // Before or at the last stamp there is nothing to predict.
     expectSamePose(prediction.predict(1.0), poseAt(1.0, 0.0, 0.0), 1e-15);
     expectSamePose(prediction.predict(0.2), poseAt(1.0, 0.0, 0.0), 1e-15);
     prediction.accept(poseAt(3.0, 0.0, 0.0), second_s);
-    EXPECT_FALSE(prediction.velocityKnown());
+    EXPECT_FALSE(prediction.state().velocity_known);
     expectSamePose(prediction.predict(2.0), poseAt(3.0, 0.0, 0.0), 1e-15);
     prediction.accept(poseAt(4.0, 0.0, 0.0), second_s + 1.0);
     expectSamePose(prediction.predict(second_s + 2.0), poseAt(5.0, 0.0, 0.0), 1e-12);
@@ -112,11 +111,45 @@ TEST(MotionPrediction, ResetForgets) {
   prediction.accept(onCircle(0.0), 0.0);
   prediction.accept(onCircle(0.1), 0.1);
   prediction.reset(poseAt(7.0, 8.0, 0.2));
-  EXPECT_FALSE(prediction.velocityKnown());
-  EXPECT_FALSE(prediction.timeSinceLast(0.2).has_value());
+  EXPECT_FALSE(prediction.state().velocity_known);
+  EXPECT_FALSE(prediction.state().timeSinceLast(0.2).has_value());
   expectSamePose(prediction.predict(0.2), poseAt(7.0, 8.0, 0.2), 1e-15);
   prediction.accept(poseAt(8.0, 8.0, 0.2), 0.2);
-  EXPECT_FALSE(prediction.velocityKnown());
+  EXPECT_FALSE(prediction.state().velocity_known);
+}
+
+TEST(MotionPrediction, KnowsNothingBeforeAPoseIsGiven) {
+  const MotionPrediction prediction;
+  EXPECT_EQ(prediction.state().status, TrackStatus::NOT_INITIALIZED);
+  expectThrows<std::logic_error>([&] { prediction.predict(5.0); }, {"initial pose", "setInitialPose()"});
+}
+
+TEST(MotionPrediction, CoastsWhileScansAreRejected) {
+  MotionPrediction prediction;
+  prediction.reject();
+  EXPECT_EQ(prediction.state().status, TrackStatus::NOT_INITIALIZED);
+  prediction.accept(poseAt(0.0, 0.0, 0.0), 0.0);
+  prediction.accept(poseAt(1.0, 0.0, 0.0), 0.1);
+  EXPECT_EQ(prediction.state().status, TrackStatus::TRACKING);
+  for (int scan = 1; scan <= 3; ++scan) {
+    prediction.reject();
+    EXPECT_EQ(prediction.state().status, TrackStatus::COASTING);
+    EXPECT_EQ(prediction.state().rejected_scans, scan);
+  }
+  expectSamePose(prediction.predict(0.4), poseAt(4.0, 0.0, 0.0), 1e-12);
+  prediction.accept(poseAt(4.0, 0.0, 0.0), 0.4);
+  EXPECT_EQ(prediction.state().status, TrackStatus::TRACKING);
+  EXPECT_EQ(prediction.state().rejected_scans, 0);
+}
+
+TEST(MotionPrediction, RefusesWhatIsNoRigidTransform) {
+  MotionPrediction prediction;
+  Eigen::Isometry3d scaled = poseAt(1.0, 0.0, 0.0), mirrored = scaled;
+  scaled.linear() *= 1.01;
+  mirrored.linear() *= -1.0;
+  for (const Eigen::Isometry3d& T : {scaled, mirrored}) {
+    expectThrows<std::invalid_argument>([&] { prediction.reset(T); }, {"T_map_base", "rigid"});
+  }
 }
 
 TEST(MotionPrediction, RefusesWhatIsNotFinite) {

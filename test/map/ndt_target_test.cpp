@@ -6,6 +6,7 @@
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
 #include "temporary_folder.h"
+#include "expect_throws.h"
 
 namespace saw_ndt {
 

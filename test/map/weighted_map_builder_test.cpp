@@ -12,6 +12,7 @@
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/version.h"
 #include "temporary_folder.h"
+#include "expect_throws.h"
 
 namespace saw_ndt {
 namespace {

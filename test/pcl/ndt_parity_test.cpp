@@ -8,6 +8,8 @@
 #include <iostream>
 
 #include "real_data.h"
+#include "registration/ndt_derivatives.h"
+#include "registration/ndt_objective.h"
 #include "registration/registration_fixtures.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/pcl/weighted_normal_distributions_transform.h"
@@ -116,19 +118,22 @@ TEST(PclParity, ScoreGradientAndHessianOnTheSameVoxels) {
   }
 }
 
+Cloud::Ptr cloudOf(const std::vector<LidarPoint>& points) {
+  auto cloud = pcl::make_shared<Cloud>();
+  for (const LidarPoint& point : points) cloud->emplace_back(point.x, point.y, point.z);
+  return cloud;
+}
+
 struct Pair {
   Cloud::Ptr source, target;
   Eigen::Isometry3d T_target_source;
 };
 
 Pair realPair(const KittiSequence& sequence, const std::vector<Eigen::Isometry3d>& poses, int scan) {
-  Pair pair{pcl::make_shared<Cloud>(), pcl::make_shared<Cloud>(), Eigen::Isometry3d::Identity()};
-  pcl::copyPointCloud(sequence.readScan(scan), *pair.target);
-  auto raw = pcl::make_shared<Cloud>();
-  pcl::copyPointCloud(sequence.readScan(scan + 1), *raw);
+  Pair pair{pcl::make_shared<Cloud>(), cloudOf(sequence.readScan(scan)), Eigen::Isometry3d::Identity()};
   pcl::VoxelGrid<pcl::PointXYZ> filter;
   filter.setLeafSize(0.5f, 0.5f, 0.5f);
-  filter.setInputCloud(raw);
+  filter.setInputCloud(cloudOf(sequence.readScan(scan + 1)));
   filter.filter(*pair.source);
   pair.T_target_source = poses[static_cast<std::size_t>(scan)].inverse() * poses[static_cast<std::size_t>(scan) + 1];
   return pair;

@@ -3,6 +3,7 @@
 
 #include "map/map_fixtures.h"
 #include "real_data.h"
+#include "saw_ndt/common/geometry.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 
 namespace saw_ndt {
@@ -60,9 +61,9 @@ TEST(PclParity, OfRealScans) {
   const std::vector<Eigen::Isometry3d> poses = sequence.posesLidar();
   const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   for (const int scan : {0, 2, 4}) {
-    for (const pcl::PointXYZI& point : sequence.readScan(scan)) {
+    for (const LidarPoint& point : sequence.readScan(scan)) {
       const Eigen::Vector3f p_map =
-          (poses[static_cast<std::size_t>(scan)] * point.getVector3fMap().cast<double>()).cast<float>();
+          (poses[static_cast<std::size_t>(scan)] * positionOf(point).cast<double>()).cast<float>();
       cloud->push_back({p_map.x(), p_map.y(), p_map.z()});
     }
   }

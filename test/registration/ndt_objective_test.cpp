@@ -4,6 +4,7 @@
 
 #include "registration/registration_fixtures.h"
 #include "temporary_folder.h"
+#include "expect_throws.h"
 
 namespace saw_ndt {
 

@@ -7,6 +7,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "map/map_fixtures.h"
 #include "registration/likelihoods.h"
 #include "registration/registration_fixtures.h"
 

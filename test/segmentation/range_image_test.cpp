@@ -118,7 +118,7 @@ TEST(RangeImage, TakesRingNumbersFromTopOrBottom) {
       rings.push_back(static_cast<std::uint16_t>(from_bottom ? sensor.rows() - 1 - row : row));
     }
     ScanView view = viewOf(cloud);
-    view.rings = rings.data();
+    view.rings = PointField(rings.data());
     image.project(view, sensor);
     EXPECT_EQ(image.verticalIndexSource(), VerticalIndexSource::RING_FIELD);
     EXPECT_EQ(image.pixelOfPoint(), expected);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "segmentation/range_image.h"
 #include "real_data.h"
 #include "report/segmentation_score.h"
 #include "saw_ndt/common/geometry.h"
@@ -14,6 +15,8 @@
 #include "saw_ndt/segmentation/scan_segmenter.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 namespace {
 
 template <typename Value>

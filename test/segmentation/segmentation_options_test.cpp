@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "temporary_folder.h"
+#include "expect_throws.h"
 
 namespace saw_ndt {
 namespace {

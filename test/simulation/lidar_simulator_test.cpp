@@ -30,7 +30,7 @@ bool equal(const LidarScan& a, const LidarScan& b) {
     return false;
   }
   for (std::size_t i = 0; i < a.points.size(); ++i) {
-    if (a.points[i].getArray4fMap().matrix() != b.points[i].getArray4fMap().matrix()) return false;
+    if (positionOf(a.points[i]) != positionOf(b.points[i])) return false;
     if (a.points[i].intensity != b.points[i].intensity) return false;
   }
   return true;

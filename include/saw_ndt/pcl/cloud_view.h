@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pcl/point_cloud.h>
-#include <pcl/type_traits.h>
+#include <pcl/point_types.h>
 
 #include <initializer_list>
 #include <type_traits>
