@@ -14,13 +14,13 @@ namespace saw_ndt {
 // What the Google Benchmark programs share.
 
 /// The instruction sets that this processor has and the environment variable SAW_NDT_INSTRUCTION_SET allows.
-const std::vector<InstructionSet>& availableInstructionSets();
+const std::vector<internal::InstructionSet>& availableInstructionSets();
 
 /// Limits the instruction set while it lives; what is used before and after is the best one.
 class InstructionSetLimit {
  public:
-  explicit InstructionSetLimit(InstructionSet most) { limitInstructionSet(most); }
-  ~InstructionSetLimit() { limitInstructionSet(InstructionSet::AVX512); }
+  explicit InstructionSetLimit(internal::InstructionSet most) { internal::limitInstructionSet(most); }
+  ~InstructionSetLimit() { internal::limitInstructionSet(internal::InstructionSet::AVX512); }
   InstructionSetLimit(const InstructionSetLimit&) = delete;
   InstructionSetLimit& operator=(const InstructionSetLimit&) = delete;
 };

@@ -74,7 +74,7 @@ void alignByPcl(benchmark::State& state) {
   double iterations = 0.0;
   while (state.KeepRunningBatch(saw_ndt::kPerturbedStartCount)) {
     for (int k = 0; k < saw_ndt::kPerturbedStartCount; ++k) {
-      iterations += ndt.align(saw_ndt::perturbedStart(saw_ndt::benchmarkPose(), k));
+      iterations += ndt.align(saw_ndt::perturbedStart(saw_ndt::benchmarkPose(), k)).iterations;
     }
   }
   state.counters["pcl_iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
