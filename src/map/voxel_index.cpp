@@ -33,25 +33,26 @@ void forEachBrickWith(const VoxelCoordinate& voxel, const Visit& visit) {
 }  // namespace
 
 VoxelIndex::VoxelIndex(const std::vector<VoxelCoordinate>& voxels) : slots_(64), voxel_count_(voxels.size()) {
-  // Voxels that follow each other often touch the same brick.
+  // Voxels that follow each other often touch the same brick. Which ones they touch is kept for the second pass.
+  std::vector<std::uint32_t> touched;
+  touched.reserve(2 * voxels.size());
   Eigen::Vector3i latest = Eigen::Vector3i::Zero();
-  Brick* brick = nullptr;
-  const auto move = [&](const Eigen::Vector3i& at) {
-    if (brick != nullptr && at == latest) return;
-    brick = &madeBrick(at);
-    latest = at;
-  };
+  std::uint32_t number_of_latest = 0;
   for (const VoxelCoordinate& voxel : voxels) {
     forEachBrickWith(voxel, [&](const Eigen::Vector3i& at, std::ptrdiff_t row, std::uint32_t x) {
-      move(at);
-      brick->rows[row].bits_ |= 1U << x;
+      if (touched.empty() || at != latest) {
+        number_of_latest = numberOfMadeBrick(at);
+        latest = at;
+      }
+      bricks_[number_of_latest].rows[row].bits_ |= 1U << x;
+      touched.push_back(number_of_latest);
     });
   }
   std::uint32_t total = 0;
-  for (Brick& counted : bricks_) {
-    counted.first = total;
+  for (Brick& brick : bricks_) {
+    brick.first = total;
     std::uint32_t rank = 0;
-    for (Row& row : counted.rows) {
+    for (Row& row : brick.rows) {
       const std::uint32_t count = countOfTenBits(row.bits_);
       row.bits_ |= rank << Row::kRankShift;
       rank += count;
@@ -59,10 +60,11 @@ VoxelIndex::VoxelIndex(const std::vector<VoxelCoordinate>& voxels) : slots_(64),
     total += rank;
   }
   numbers_.assign(total + 1U, 0);
+  auto next = touched.begin();
   for (std::size_t number = 0; number < voxels.size(); ++number) {
-    forEachBrickWith(voxels[number], [&](const Eigen::Vector3i& at, std::ptrdiff_t row, std::uint32_t x) {
-      move(at);
-      numbers_[brick->first + brick->rows[row].rank(x)] = static_cast<std::int32_t>(number);
+    forEachBrickWith(voxels[number], [&](const Eigen::Vector3i&, std::ptrdiff_t row, std::uint32_t x) {
+      const Brick& brick = bricks_[*next++];
+      numbers_[brick.first + brick.rows[row].rank(x)] = static_cast<std::int32_t>(number);
     });
   }
 }
@@ -106,9 +108,9 @@ const VoxelIndex::Brick* VoxelIndex::brickAt(const Eigen::Vector3i& at) const {
   return number == kNone ? nullptr : bricks_.data() + number;
 }
 
-VoxelIndex::Brick& VoxelIndex::madeBrick(const Eigen::Vector3i& at) {
+std::uint32_t VoxelIndex::numberOfMadeBrick(const Eigen::Vector3i& at) {
   std::size_t slot = slotOf(at);
-  if (slots_[slot].number != kNone) return bricks_[static_cast<std::size_t>(slots_[slot].number)];
+  if (slots_[slot].number != kNone) return static_cast<std::uint32_t>(slots_[slot].number);
   if (2 * (bricks_.size() + 1) > slots_.size()) {
     std::vector<Slot> old(2 * slots_.size());
     old.swap(slots_);
@@ -117,8 +119,10 @@ VoxelIndex::Brick& VoxelIndex::madeBrick(const Eigen::Vector3i& at) {
     }
     slot = slotOf(at);
   }
-  slots_[slot] = {at, static_cast<std::int32_t>(bricks_.size())};
-  return bricks_.emplace_back();
+  const auto number = static_cast<std::uint32_t>(bricks_.size());
+  slots_[slot] = {at, static_cast<std::int32_t>(number)};
+  bricks_.emplace_back();
+  return number;
 }
 
 }  // namespace saw_ndt::internal

@@ -110,7 +110,7 @@ class VoxelIndex {
 
   const Brick* brickAt(const Eigen::Vector3i& at) const;
   std::size_t slotOf(const Eigen::Vector3i& at) const;
-  Brick& madeBrick(const Eigen::Vector3i& at);
+  std::uint32_t numberOfMadeBrick(const Eigen::Vector3i& at);
 
   std::vector<Slot> slots_;
   std::vector<Brick> bricks_;

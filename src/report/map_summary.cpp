@@ -95,7 +95,7 @@ Json toJson(const MapSummary& summary) {
 }
 
 void writeLine(std::ostringstream& text, const std::string& name, const Json& value) {
-  text << std::left << std::setw(30) << name << value.dump() << '\n';
+  text << std::left << std::setw(29) << name << ' ' << value.dump() << '\n';
 }
 
 }  // namespace

@@ -261,7 +261,8 @@ TEST(WeightedNdt, DoubleArithmeticTakesEffectInAnyOrderAndRefusesAMapWithoutDoub
     EXPECT_TRUE(ndt->hasConverged());
   }
   EXPECT_EQ(before.getFinalTransformation(), after.getFinalTransformation());
-  EXPECT_LT((before.getFinalTransformation() - single.getFinalTransformation()).norm(), 1e-4f);
+  // Both stop at a step of less than 1 mm.
+  EXPECT_LT((before.getFinalTransformation() - single.getFinalTransformation()).norm(), 1e-3f);
   after.setTargetMap(single.getTargetMap());
   EXPECT_THROW(after.align(output, guessOf(1)), std::invalid_argument);
   after.setAlignmentOptions({});
