@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
     if (classical) options.segmentation.reset();
     saw_ndt::checkedUsage([&] { return saw_ndt::WeightedMapBuilder(options.resolution_m); });
 
+    sequence.posesLidar();
     // Found out before the long work: whether the map can be written. This leaves nothing behind.
     { const saw_ndt::internal::AtomicOutput probe(map_file); }
 

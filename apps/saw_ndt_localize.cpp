@@ -91,6 +91,9 @@ int main(int argc, char** argv) {
     saw_ndt::ProgressBar progress(selected.size());
     const std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
     const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *source, [&] { progress.step(); });
+    for (const std::string& failure : run.failures) {
+      if (!failure.empty()) std::cerr << app.name() << ": " << failure << ": rejected\n";
+    }
     const saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
     if (sequence.hasPoses() && !summary.metrics) {
       std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";

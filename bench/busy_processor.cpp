@@ -19,9 +19,8 @@
 #include "benchmark_scans.h"
 #include "progress_bar.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/evaluation/statistics.h"
+#include "evaluation/statistics.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/segmentation/cloud_view.h"
 
 namespace {
 
@@ -81,7 +80,7 @@ class Drive {
  private:
   std::vector<Eigen::Isometry3d> poses_;
   std::vector<double> stamps_s_;
-  std::vector<pcl::PointCloud<pcl::PointXYZI>> scans_;
+  std::vector<std::vector<saw_ndt::LidarPoint>> scans_;
 };
 
 struct Settings {
@@ -100,9 +99,7 @@ Times measure(const Drive& drive, const std::string& method, int threads, const 
   saw_ndt::LocalizerOptions options;
   options.method = saw_ndt::LocalizationMethod::named(method);
   options.alignment.threads = threads;
-  saw_ndt::Localizer localizer(
-      std::make_shared<const saw_ndt::WeightedVoxelMap>(saw_ndt::benchmarkMap().reweighted(options.method.voxels)),
-      options);
+  saw_ndt::Localizer localizer(saw_ndt::benchmarkMap(), options);
   const auto period =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::milli>(settings.period_ms));
   Times times;
@@ -177,8 +174,7 @@ int main(int argc, char** argv) {
       for (const std::string& method : methods) {
         for (const int threads : thread_counts) {
           const Times times = measure(drive, method, threads, settings, progress);
-          const saw_ndt::internal::DurationStatistics statistics =
-              saw_ndt::internal::durationStatistics(times.total_ms);
+          const saw_ndt::internal::DurationStatistics statistics = saw_ndt::internal::durationStatistics(times.total_ms);
           std::cout << " " << statistics.mean << " / " << statistics.p95 << " / " << statistics.max << " |";
           rejected += times.rejected;
         }

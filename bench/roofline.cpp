@@ -10,6 +10,7 @@
 #include <iomanip>
 #include <iostream>
 #include <random>
+#include <thread>
 
 #include "app_options.h"
 #include "benchmark_program.h"

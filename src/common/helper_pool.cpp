@@ -47,13 +47,7 @@ void keepAwayFromCaller(Helper& helper) {
   helper.avoided_cpu = cpu;
 }
 
-// Who wants a helper writes down what for and then calls this; a helper looks for that once it is marked as asleep.
-void wakeUp(Helper& helper) {
-  if (!helper.asleep.load(std::memory_order_seq_cst) || !helper.asleep.exchange(false)) return;
-  keepAwayFromCaller(helper);
-  sem_post(&helper.wake);
-}
-
+// A helper is marked as asleep before it looks for what it is wanted for, see HelperPool::wakeUp().
 template <typename Wanted>
 void sleepUnless(Wanted wanted, Helper& helper) {
   helper.asleep.store(true, std::memory_order_seq_cst);
@@ -118,7 +112,7 @@ HelperPool::HelperPool(int helper_count)
 }
 
 Helper* HelperPool::borrow(int most) {
-  if (most <= 0 || getpid() != process_) return nullptr;  // a forked process has no helpers
+  if (most <= 0 || isForked()) return nullptr;
   const std::uint32_t session = session_count_.fetch_add(1, std::memory_order_relaxed);
   Helper* first = nullptr;
   Helper** link = &first;
@@ -144,7 +138,7 @@ Helper* HelperPool::borrow(int most) {
   return first;
 }
 
-void HelperPool::run(Helper& first, std::size_t chunk_count, int workers, const ChunkBody& body) {
+void HelperPool::run(Helper& first, std::size_t chunk_count, int workers, const ChunkBody& body) const {
   first.loop.open(chunk_count, workers, body);
   std::size_t wanted = std::min(chunk_count, static_cast<std::size_t>(workers)) - 1;
   for (Helper* helper = &first; helper != nullptr && wanted > 0; helper = helper->next, --wanted) wakeUp(*helper);
@@ -160,6 +154,15 @@ void HelperPool::giveBack(Helper* first) {
   }
   first->assignment.store(kIdle, std::memory_order_release);
 }
+
+// What the helper is wanted for has been written down before.
+void HelperPool::wakeUp(Helper& helper) const {
+  if (!helper.asleep.load(std::memory_order_seq_cst) || !helper.asleep.exchange(false) || isForked()) return;
+  keepAwayFromCaller(helper);
+  sem_post(&helper.wake);
+}
+
+bool HelperPool::isForked() const { return getpid() != process_; }
 
 bool HelperPool::start(Helper& helper) {
   // The program's signals are not for helpers.

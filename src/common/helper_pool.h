@@ -50,13 +50,15 @@ class HelperPool {
   Helper* borrow(int most);
 
   /// Runs a loop of a session, see SharedLoop.
-  static void run(Helper& first, std::size_t chunk_count, int workers, const ChunkBody& body);
+  void run(Helper& first, std::size_t chunk_count, int workers, const ChunkBody& body) const;
 
   /// Ends a session. Its helpers may still be awake, but take no chunk any more.
   static void giveBack(Helper* first);
 
  private:
   static bool start(Helper& helper);
+  void wakeUp(Helper& helper) const;
+  bool isForked() const;  ///< whether this is a copy of the pool in a child process, where threads are not copied
 
   int helper_count_;
   std::unique_ptr<Helper[]> helpers_;

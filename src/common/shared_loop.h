@@ -11,7 +11,8 @@ namespace saw_ndt::internal {
 /// What different threads write lies this far apart, so that they do not take it from each other's caches.
 constexpr std::size_t kCacheLine_bytes = 64;
 
-/// How often a thread looks for what it waits for before it leaves the processor to others: 30 to 130 us.
+/// How often a thread looks for what it waits for before it leaves the processor to others: for 30 to 130 us on an x86
+/// processor.
 constexpr int kSpins = 2000;
 
 /// Tells the processor that the thread spins.

@@ -17,6 +17,7 @@ std::vector<DriveLocalization> localizeByTurns(const std::vector<ScanLocalizer>&
     for (DriveLocalization& run : runs) {
       run.scans.push_back(scan.number);
       run.names.push_back(scan.name);
+      run.failures.push_back(scan.failure);
       if (scan.T_map_lidar) run.T_map_lidar_reference.push_back(*scan.T_map_lidar);
     }
     for (std::size_t turn = 0; turn < localizers.size(); ++turn) {

@@ -196,15 +196,6 @@ TEST_F(LocalizeApp, BadMapsAreNamed) {
 
 TEST_F(LocalizeApp, BadDrivesAreNamedAndNothingStaysBehind) {
   buildMap("-scans 0");
-  const std::string scan = contentOf(drive_folder / "velodyne" / "000004.bin");
-  replace("velodyne/000004.bin", scan.substr(0, 1003));
-  expectLocalizeFails(1, {"000004.bin: offset 992"});
-  std::filesystem::remove(drive_folder / "velodyne" / "000004.bin");
-  std::filesystem::create_symlink("nowhere.bin", drive_folder / "velodyne" / "000004.bin");
-  expectLocalizeFails(1, {"000004.bin: No such file"});
-  std::filesystem::remove(drive_folder / "velodyne" / "000004.bin");
-  replace("velodyne/000004.bin", scan);
-
   const std::string poses = contentOf(drive_folder / "poses.txt"), calib = contentOf(drive_folder / "calib.txt");
   replace("poses.txt", poses.substr(0, poses.find('\n') + 1));
   expectLocalizeFails(1, {"poses.txt: 1 poses", "6"});
@@ -218,6 +209,34 @@ TEST_F(LocalizeApp, BadDrivesAreNamedAndNothingStaysBehind) {
   expectLocalizeFails(1, {"calib.txt: no line Tr"});
   replace("calib.txt", calib);
   expectFails(SAW_NDT_APP, quoted(folder.path()) + quoted(map_file) + quoted(out), 1, {"velodyne: No such file"});
+}
+
+TEST_F(LocalizeApp, AScanThatCannotBeReadIsRejectedAndTheOthersAreLocalized) {
+  buildMap("");
+  const std::string scan = contentOf(drive_folder / "velodyne" / "000003.bin");
+  const std::pair<std::string, std::string> damages[] = {{scan.substr(0, 1003), "000003.bin: offset 992"},
+                                                         {"", "000003.bin: offset 0: the file is empty"}};
+  for (const auto& [content, reason] : damages) {
+    replace("velodyne/000003.bin", content);
+    const AppResult result = localize("-skip 0");
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+    const auto json = nlohmann::json::parse(result.output);
+    EXPECT_EQ(json.at("accepted"), 5);
+    EXPECT_EQ(json.at("rejected"), 1);
+    EXPECT_LT(json.at("position_max_m"), 0.1);
+    const std::string frames = contentOf(out / "frames.csv");
+    EXPECT_NE(frames.find(",0,unreadable scan,"), std::string::npos) << frames;
+    EXPECT_NE(frames.find(",000003.bin,coasting,"), std::string::npos) << frames;
+  }
+}
+
+TEST_F(LocalizeApp, ALocalizerOfOtherSegmentationIsRefusedUnlessAllowed) {
+  buildMap("");
+  const std::string other = "-ground-rule inclination ";
+  expectLocalizeFails(1, {"segmentation.ground.rule = inclination", "growing"}, other);
+  const AppResult result = localize("-skip 0 -allow-other-segmentation " + other);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
 }
 
 TEST_F(LocalizeApp, OutputsThatCannotBeWrittenAreNamed) {

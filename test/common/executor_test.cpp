@@ -1,6 +1,7 @@
 #include "common/executor.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -35,6 +36,15 @@ std::size_t threadsOfProcess() {
 
 void waitUntil(const std::atomic<bool>& flag) {
   while (!flag) std::this_thread::yield();
+}
+
+// A loop that never ends unless two threads work on it.
+void meetInALoop() {
+  std::atomic<int> began{0};
+  forEachChunk(2, 2, [&](std::size_t, int) {
+    ++began;
+    while (began < 2) std::this_thread::yield();
+  });
 }
 
 // Takes some microseconds, also where the result is not used.
@@ -188,12 +198,7 @@ TEST(Executor, HelpersOfASessionAreBackWhenItEnds) {
   static HelperPool& one = *new HelperPool(1);
   for (int repetition = 0; repetition < 100; ++repetition) {
     const HelperSession session(2, one);
-    // Would never end without the helper.
-    std::atomic<int> began{0};
-    forEachChunk(2, 2, [&](std::size_t, int) {
-      ++began;
-      while (began < 2) std::this_thread::yield();
-    });
+    meetInALoop();
   }
 }
 
@@ -209,15 +214,21 @@ TEST(Executor, RunsAloneWhereNoHelperIsIdle) {
   other.join();
 }
 
+TEST(Executor, ServesASecondThreadWithHelpersOfItsOwn) {
+  const HelperSession session(3, manyHelpers());
+  std::thread other([] {
+    const HelperSession second(2, manyHelpers());
+    for (int i = 0; i < 10; ++i) meetInALoop();
+  });
+  for (int i = 0; i < 10; ++i) meetInALoop();
+  other.join();
+}
+
 TEST(Executor, SleepingHelpersComeBackToALaterLoopOfTheSession) {
   const HelperSession session(2, manyHelpers());
   for (int repetition = 0; repetition < 20; ++repetition) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    std::atomic<int> began{0};
-    forEachChunk(2, 2, [&](std::size_t, int) {
-      ++began;
-      while (began < 2) std::this_thread::yield();
-    });
+    meetInALoop();
   }
 }
 
@@ -242,14 +253,15 @@ void useHelpersFromEightThreads(HelperPool& pool, const std::function<void()>& i
         const HelperSession session(1 + (caller + static_cast<int>(i)) % 8, pool);
         for (const std::size_t chunk_count : {5U, 17U}) {
           std::vector<std::size_t> results(chunk_count, 0);
-          std::vector<int> scratch(static_cast<std::size_t>(pool.size() + 1), 0);
+          std::vector<std::atomic<int>> at_work(static_cast<std::size_t>(pool.size() + 1));
           forEachChunk(0, chunk_count, [&](std::size_t chunk, int worker) {
-            ++scratch[static_cast<std::size_t>(worker)];
+            std::atomic<int>& chunks_of_worker = at_work[static_cast<std::size_t>(worker)];
+            if (++chunks_of_worker != 1) ++mistakes;
             laborious(chunk);
             results[chunk] += chunk + i;
+            --chunks_of_worker;
           });
           for (std::size_t chunk = 0; chunk < chunk_count; ++chunk) mistakes += results[chunk] != chunk + i ? 1 : 0;
-          mistakes += std::accumulate(scratch.begin(), scratch.end(), 0) != static_cast<int>(chunk_count) ? 1 : 0;
         }
       }
     });
@@ -274,29 +286,34 @@ TEST(Executor, AddsOneThreadLessThanCoresForAllCallersTogether) {
   });
 }
 
-TEST(Executor, WorksAloneInAForkedProcess) {
-  std::atomic<int> chunks{0};
-  const auto count = [&](std::size_t, int) { ++chunks; };
-  // A helper is there, and assigned, when the process forks.
-  const HelperSession session(2, manyHelpers());
-  forEachChunk(2, 20, count);
-  chunks = 0;
+// Runs a loop in a forked process and returns whether that thread ran all of it and keeps its processors.
+bool worksAloneInAForkedProcess() {
   const pid_t child = fork();
-  ASSERT_GE(child, 0);
   if (child == 0) {
-    forEachChunk(2, 20, count);  // in the session that was begun before
-    std::thread::id this_thread = std::this_thread::get_id();
-    bool alone = true;
-    const auto check = [&] {
-      const HelperSession own(0, manyHelpers());
-      forEachChunk(0, 20, [&](std::size_t, int) { alone = alone && std::this_thread::get_id() == this_thread; });
-    };
-    check();
-    _exit(chunks == 20 && alone ? 0 : 1);
+    cpu_set_t before, after;
+    sched_getaffinity(0, sizeof(before), &before);
+    const std::thread::id caller = std::this_thread::get_id();
+    std::size_t own_chunks = 0;
+    for (int i = 0; i < 10; ++i) {
+      const HelperSession session(0, manyHelpers());
+      forEachChunk(0, 20, [&](std::size_t, int) { own_chunks += std::this_thread::get_id() == caller ? 1 : 0; });
+    }
+    sched_getaffinity(0, sizeof(after), &after);
+    _exit(own_chunks == 200 && CPU_EQUAL(&before, &after) ? 0 : 1);
   }
   int status = -1;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TEST(Executor, WorksAloneInAForkedProcess) {
+  {
+    const HelperSession session(0, manyHelpers());
+    meetInALoop();
+    EXPECT_TRUE(worksAloneInAForkedProcess()) << "in a session that was begun before";
+  }
+  EXPECT_TRUE(worksAloneInAForkedProcess());
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_TRUE(worksAloneInAForkedProcess()) << "helpers sleep";
 }
 
 TEST(Executor, RefusesMoreChunksThanATicketCounts) {

@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <limits>
 #include <memory>
+#include <thread>
+#include <vector>
 
 #include "expect_throws.h"
 #include "map/map_fixtures.h"
@@ -231,6 +233,66 @@ TEST_F(LocalizerTest, RefusesMapsThatDoNotFitTheMethod) {
   refused(labelled, "weighted-s50", {"VoxelWeighting", "weighted-s50"});
   refused(labelled, "classical", {"VoxelWeighting", "classical"});
   refused(unlabelled, "weighted", {"labels", "weighted"});
+}
+
+TEST_F(LocalizerTest, ForgettingTheInitialPoseIsAnError) {
+  Localizer localizer(map, options);
+  EXPECT_EQ(localizer.track().status, TrackStatus::NOT_INITIALIZED);
+  expectThrows<std::logic_error>([&] { localizer.localize(viewOf(scanOf(0)), 0.0); }, {"setInitialPose()"});
+}
+
+TEST_F(LocalizerTest, TheTrackIsToldWithEveryScan) {
+  Localizer localizer = underWay(options);
+  EXPECT_EQ(localizer.track().status, TrackStatus::TRACKING);
+  EXPECT_TRUE(localizer.track().velocity_known);
+  EXPECT_NEAR(localizer.track().velocity_base_mps.norm(), 2.24, 0.1);
+  const LocalizationResult rejected = localizer.localize(viewOf(Cloud()), 0.2);
+  EXPECT_EQ(rejected.track.status, TrackStatus::COASTING);
+  EXPECT_EQ(rejected.track.rejected_scans, 1);
+  EXPECT_TRUE(sameBits(rejected.track.T_map_base, localizer.track().T_map_base));
+  const LocalizationResult accepted = localizer.localize(viewOf(scanOf(3)), 0.3);
+  EXPECT_EQ(accepted.track.status, TrackStatus::TRACKING);
+  EXPECT_EQ(accepted.track.rejected_scans, 0);
+}
+
+TEST_F(LocalizerTest, RefusesMapsOfOtherSegmentationUnlessAllowed) {
+  WeightedMapBuilder builder(1.0, SegmentationOptions());
+  addCloud(builder, streetCorner(1), Eigen::Isometry3d::Identity());
+  const WeightedVoxelMap made_with = builder.build();
+  LocalizerOptions other;
+  EXPECT_NO_THROW(Localizer(made_with, other));
+  other.segmentation.sensor = SensorModel::named("VLP-16");
+  expectThrows<std::invalid_argument>([&] { Localizer(made_with, other); },
+                                      {"segmentation.sensor", "VLP-16", "HDL-64E"});
+  other.segmentation = {};
+  other.segmentation.mounting_pitch_deg = 2.5;
+  expectThrows<std::invalid_argument>([&] { Localizer(made_with, other); }, {"mounting_pitch_deg = 2.5", "with 0"});
+  other.allow_other_segmentation = true;
+  EXPECT_NO_THROW(Localizer(made_with, other));
+  EXPECT_NO_THROW(Localizer(mapOf(streetCorner(1)), other)) << "of a map that does not know how it was made";
+}
+
+TEST_F(LocalizerTest, TwoInTwoThreadsGiveTheSameBitsAsOneAfterTheOther) {
+  options.alignment.threads = 2;
+  const auto drive = [&](double offset_m) {
+    Localizer localizer(map, options);
+    localizer.setInitialPose(poseOf(0) * planarPose(offset_m, 0.0, 0.0));
+    std::vector<Eigen::Isometry3d> poses;
+    for (int scan = 0; scan < 8; ++scan) {
+      poses.push_back(localizer.localize(viewOf(scanOf(scan)), 0.1 * scan).T_map_base);
+    }
+    return poses;
+  };
+  const double offsets_m[] = {0.1, -0.2};
+  std::vector<Eigen::Isometry3d> expected[2], found[2];
+  for (const int i : {0, 1}) expected[i] = drive(offsets_m[i]);
+  std::vector<std::thread> threads;
+  for (const int i : {0, 1}) threads.emplace_back([&, i] { found[i] = drive(offsets_m[i]); });
+  for (std::thread& thread : threads) thread.join();
+  for (const int i : {0, 1}) {
+    ASSERT_EQ(found[i].size(), expected[i].size());
+    for (std::size_t k = 0; k < expected[i].size(); ++k) EXPECT_TRUE(sameBits(found[i][k], expected[i][k])) << i << k;
+  }
 }
 
 TEST_F(LocalizerTest, WrongOptionsNameTheirField) {

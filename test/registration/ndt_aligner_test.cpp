@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+#include <vector>
+
 #include "registration/ndt_evaluation.h"
 #include "registration/registration_fixtures.h"
 
@@ -192,6 +195,27 @@ TEST(NdtAligner, DoublesGiveThePoseOfSinglesAndNeedTheirCells) {
   WeightedMapBuilder builder(1.0);
   addCloud(builder, streetCorner(1), Eigen::Isometry3d::Identity());
   EXPECT_THROW(aligner.align(NdtTarget(builder.build()), source, guess, exact), std::invalid_argument);
+}
+
+TEST(NdtAligner, EightAlignmentsToOneTargetAtOnceGiveTheSameBitsAsOneAfterTheOther) {
+  const NdtTarget target = cornerMap();
+  const SourcePoints source = sourceOf(streetCorner(2, 1500));
+  AlignmentOptions options;
+  options.threads = 2;
+  std::mt19937 random(31);
+  std::vector<Eigen::Isometry3d> guesses;
+  for (int i = 0; i < 8; ++i) guesses.push_back(randomPose(random, 0.3, 0.05));
+  std::vector<AlignmentResult> expected(guesses.size()), found(guesses.size());
+  const auto align = [&](std::size_t i) { return NdtAligner().align(target, source, guesses[i], options); };
+  for (std::size_t i = 0; i < guesses.size(); ++i) expected[i] = align(i);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < guesses.size(); ++i) threads.emplace_back([&, i] { found[i] = align(i); });
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t i = 0; i < guesses.size(); ++i) {
+    EXPECT_TRUE(found[i].converged());
+    EXPECT_TRUE(found[i].T_map_source.matrix() == expected[i].T_map_source.matrix()) << i;
+    EXPECT_EQ(found[i].score, expected[i].score) << i;
+  }
 }
 
 }  // namespace

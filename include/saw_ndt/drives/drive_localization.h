@@ -14,6 +14,7 @@ namespace saw_ndt {
 struct DriveLocalization {
   std::vector<int> scans;          ///< numbers
   std::vector<std::string> names;  ///< see RecordedScan::name
+  std::vector<std::string> failures;  ///< why a scan could not be read, empty where it could
   std::vector<LocalizationResult> results;
   std::vector<Eigen::Isometry3d> T_map_lidar_reference;  ///< reference poses; empty where a scan has none
 };
