@@ -4,6 +4,7 @@
 
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
+#include "segmentation/segmentation_stages.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"

@@ -29,12 +29,12 @@ void filterSource(benchmark::State& state, const saw_ndt::LocalizationMethod& me
 }
 
 void filterByPcl(benchmark::State& state) {
-  const auto scan = pcl::make_shared<pcl::PointCloud<pcl::PointXYZI>>(saw_ndt::benchmarkScan());
+  const auto scan = saw_ndt::benchmarkScanPoints();
   const auto size = static_cast<float>(voxelSize());
-  pcl::VoxelGrid<pcl::PointXYZI> grid;
+  pcl::VoxelGrid<pcl::PointXYZ> grid;
   grid.setLeafSize(size, size, size);
   grid.setInputCloud(scan);
-  pcl::PointCloud<pcl::PointXYZI> centroids;
+  pcl::PointCloud<pcl::PointXYZ> centroids;
   for (auto _ : state) grid.filter(centroids);
   state.counters["centroids"] = static_cast<double>(centroids.size());
   saw_ndt::setTimePer(state, "point", scan->size());
