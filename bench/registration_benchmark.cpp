@@ -2,6 +2,7 @@
 // pcl::NormalDistributionsTransform beside them.
 
 #include "benchmark_program.h"
+#include "common/executor.h"
 #include "benchmark_scans.h"
 #include "perturbed_starts.h"
 #include "registration/ndt_evaluation.h"
@@ -20,6 +21,7 @@ void evaluate(benchmark::State& state, const RegistrationCase& scan, int threads
   source.begin(scan.target, scan.source, options);
   const saw_ndt::internal::Evaluation evaluation = source.onFineLevel();
   saw_ndt::internal::NdtDerivatives derivatives;
+  const saw_ndt::internal::HelperSession session(threads);  // as an alignment has
   for (auto _ : state) {
     derivatives = evaluation(saw_ndt::benchmarkPose());
     benchmark::DoNotOptimize(derivatives);

@@ -164,7 +164,7 @@ struct Configuration {
 };
 
 std::ostream& startRow(const Configuration& c) {
-  return std::cout << "| " << saw_ndt::toString(c.set) << " | " << c.threads << " | ";
+  return std::cout << "| " << saw_ndt::internal::toString(c.set) << " | " << c.threads << " | ";
 }
 
 void printProcessor(const std::vector<Configuration>& configurations) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "benchmark_program.h"
+#include "common/executor.h"
 #include "registration/ndt_evaluation.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 #include "synthetic_city.h"
@@ -39,6 +40,7 @@ void evaluate(benchmark::State& state, const saw_ndt::SourcePoints& source, std:
   ordered.begin(target, source, options);
   const saw_ndt::internal::Evaluation evaluation = ordered.onFineLevel();
   saw_ndt::internal::NdtDerivatives derivatives;
+  const saw_ndt::internal::HelperSession session(threads);  // as an alignment has
   for (auto _ : state) {
     derivatives = evaluation(T_map_source);
     benchmark::DoNotOptimize(derivatives);

@@ -38,7 +38,7 @@ class SelectedScans : public ScanSource {
     if (sequence_.hasPoses()) scan.T_map_lidar = sequence_.posesLidar()[place];
     scan.failure.clear();
     try {
-      scan.points = sequence_.readScan(number);
+      readKittiScan(sequence_.scanPath(number), scan.points);
     } catch (const Error& error) {
       scan.points.clear();
       scan.failure = error.what();

@@ -18,33 +18,31 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kBytesPerPoint = 4 * sizeof(float);
-
 // Four cameras like those of KITTI's vehicle: what writeKittiCalibration() states where nothing is projected.
 constexpr double kFocalLength_px = 720.0;
 constexpr double kPrincipalPointX_px = 620.0;
 constexpr double kPrincipalPointY_px = 188.0;
 constexpr std::array<double, 4> kCameraPlaces_m = {0.0, -0.54, 0.06, -0.48};  // to the left of the left grey one
 
-/// The records of a binary file without a header; Error unless there is at least one and the last one is whole.
+/// Reads the records of a binary file without a header, into memory that `values` may bring along; Error unless there is
+/// at least one and the last one is whole.
 template <typename Value>
-std::vector<Value> readRecords(const fs::path& path, std::size_t record_bytes) {
+void readRecords(const fs::path& path, std::vector<Value>& values) {
   std::ifstream stream = openInputFile(path);
   stream.seekg(0, std::ios::end);
   const std::streamoff end = stream.tellg();
   if (end < 0) throw Error(path.string(), "", "its size cannot be told");
   const auto size = static_cast<std::size_t>(end);
   if (size == 0) throw Error(path.string(), "offset 0", "the file is empty");
-  if (size % record_bytes != 0) {
-    throw Error(path.string(), "offset " + std::to_string(size - size % record_bytes),
+  if (size % sizeof(Value) != 0) {
+    throw Error(path.string(), "offset " + std::to_string(size - size % sizeof(Value)),
                 "the last point is cut short: " + std::to_string(size) + " bytes is no multiple of " +
-                    std::to_string(record_bytes));
+                    std::to_string(sizeof(Value)));
   }
-  std::vector<Value> values(size / sizeof(Value));
+  values.resize(size / sizeof(Value));
   stream.seekg(0);
   stream.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(size));
   if (!stream) throw Error(path.string(), "offset " + std::to_string(stream.gcount()), "could not be read on");
-  return values;
 }
 
 template <typename Value>
@@ -64,12 +62,19 @@ void writeMatrix(std::ostream& stream, const char* key, const Eigen::Matrix<doub
 }  // namespace
 
 std::vector<LidarPoint> readKittiScan(const fs::path& path) {
-  static_assert(sizeof(LidarPoint) == kBytesPerPoint);
-  return readRecords<LidarPoint>(path, kBytesPerPoint);
+  std::vector<LidarPoint> points;
+  readKittiScan(path, points);
+  return points;
+}
+
+void readKittiScan(const fs::path& path, std::vector<LidarPoint>& points) {
+  static_assert(sizeof(LidarPoint) == 4 * sizeof(float));
+  readRecords(path, points);
 }
 
 std::vector<std::uint16_t> readSemanticKittiLabels(const fs::path& path) {
-  const std::vector<std::uint32_t> values = readRecords<std::uint32_t>(path, sizeof(std::uint32_t));
+  std::vector<std::uint32_t> values;
+  readRecords(path, values);
   std::vector<std::uint16_t> classes(values.size());
   std::transform(values.begin(), values.end(), classes.begin(),
                  [](std::uint32_t value) { return static_cast<std::uint16_t>(value & 0xffffU); });

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/executor.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/ground_loops.h"
@@ -16,7 +15,7 @@ float tangent(double degrees) { return static_cast<float>(std::tan(radiansFromDe
 }  // namespace
 
 void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
-                             std::vector<std::uint8_t>& ground, int threads) {
+                             std::vector<std::uint8_t>& ground) {
   if (options.rule == GroundRule::INCLINATION) {
     detectByInclination(image, sensor, options, ground);
     return;
@@ -28,28 +27,11 @@ void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor,
   profile_height_.assign(columns, -sensor_height);
   states_.resize(image.range().size());
   no_returns_.assign(columns, 0);
-  if (neighbour_sums_.size() < static_cast<std::size_t>(threads)) {
-    neighbour_sums_.resize(static_cast<std::size_t>(threads));
-  }
-  for (NeighbourSums& sums : neighbour_sums_) {
-    sums.returns.resize(columns + 2);
-    sums.ground.resize(columns + 2);
-  }
+  neighbour_sums_.returns.resize(columns + 2);
+  neighbour_sums_.ground.resize(columns + 2);
   ground.resize(image.range().size());
-  constexpr std::size_t kColumnsAtOnce = 512;
-  internal::forEachChunk(threads, (columns + kColumnsAtOnce - 1) / kColumnsAtOnce, [&](std::size_t chunk, int) {
-    const std::size_t column = chunk * kColumnsAtOnce;
-    grow(image, options, column, std::min(kColumnsAtOnce, columns - column));
-  });
-  constexpr int kRowsAtOnce = 8;
-  const int rows = image.rows();
-  const auto row_chunks = static_cast<std::size_t>((rows + kRowsAtOnce - 1) / kRowsAtOnce);
-  internal::forEachChunk(threads, row_chunks, [&](std::size_t chunk, int worker) {
-    const int first = static_cast<int>(chunk) * kRowsAtOnce;
-    for (int row = first; row < std::min(first + kRowsAtOnce, rows); ++row) {
-      settle(image, row, options.smooths, neighbour_sums_[worker], ground);
-    }
-  });
+  grow(image, options, 0, columns);
+  for (int row = 0; row < image.rows(); ++row) settle(image, row, options.smooths, neighbour_sums_, ground);
 }
 
 void GroundDetection::detectByInclination(const RangeImage& image, const SensorModel& sensor,

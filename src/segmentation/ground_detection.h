@@ -13,9 +13,9 @@ namespace saw_ndt::internal {
 class GroundDetection {
  public:
   /// Writes 1 for every pixel of the image that is ground and 0 for every other, row-major. The options have been
-  /// checked, and the image was projected with the sensor model. The result does not depend on the number of threads.
+  /// checked, and the image was projected with the sensor model. In one thread: handing parts to others would take as long.
   void detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
-              std::vector<std::uint8_t>& ground, int threads = 1);
+              std::vector<std::uint8_t>& ground);
 
  private:
   /// Sums over three rows, with one column more at either side.
@@ -37,7 +37,7 @@ class GroundDetection {
   std::vector<float> candidate_heights_;
   std::vector<std::uint8_t> states_;
   std::vector<std::uint8_t> no_returns_;
-  std::vector<NeighbourSums> neighbour_sums_;  ///< one a thread
+  NeighbourSums neighbour_sums_;
 };
 
 }  // namespace saw_ndt::internal

@@ -26,7 +26,7 @@ void ScanSegmenter::segment(const ScanView& scan, std::vector<StructuralLabel>& 
   internal::SegmentationStages& s = *stages_;
   const SegmentationOptions& options = s.options;
   s.image.project(scan, options.sensor, radiansFromDegrees(options.mounting_pitch_deg), threads);
-  s.ground_detection.detect(s.image, options.sensor, options.ground, s.ground, threads);
+  s.ground_detection.detect(s.image, options.sensor, options.ground, s.ground);
   s.component_filter.label(s.image, options.sensor, s.ground, options.components, s.pixel_labels, threads);
   labels.resize(scan.size);
   const std::int32_t* const pixel_of_point = s.image.pixelOfPoint().data();

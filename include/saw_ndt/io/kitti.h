@@ -14,6 +14,8 @@ namespace saw_ndt {
 /// reflectance. Points that are not finite are kept. Throws Error where the file is missing, empty, or ends within a
 /// point (naming the offset).
 SAW_NDT_EXPORT std::vector<LidarPoint> readKittiScan(const std::filesystem::path& path);
+/// The same into memory that `points` may bring along.
+SAW_NDT_EXPORT void readKittiScan(const std::filesystem::path& path, std::vector<LidarPoint>& points);
 
 /// Reads SemanticKITTI labels: the class of each point of a scan, the low 16 bits of a uint32. Throws Error as
 /// readKittiScan().
