@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/map/voxel_weighting.h"
@@ -25,7 +26,7 @@ struct SourceSelection {
 
 /// Makes a source of a scan: selects its points, brings them into the frame of the source, and thins them to one
 /// centroid for every voxel and label, so that no centroid mixes labels. Keeps its scratch memory between calls.
-class SourceVoxelFilter {
+class SAW_NDT_EXPORT SourceVoxelFilter {
  public:
   /// @param voxel_size_m  edge of a voxel; 0 keeps every point as it is
   /// @throws std::invalid_argument where it is negative or not finite

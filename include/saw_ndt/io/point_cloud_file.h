@@ -18,7 +18,7 @@ namespace saw_ndt {
 /// PointT is pcl::PointXYZ, PointXYZI or PointXYZL. An intensity that the file has not is 0; labels must be there.
 /// Throws Error where the file is of neither kind, missing, damaged, or lacks a field.
 template <typename PointT>
-pcl::PointCloud<PointT> readPointCloud(const std::filesystem::path& path);
+SAW_NDT_EXPORT pcl::PointCloud<PointT> readPointCloud(const std::filesystem::path& path);
 
 /// The names of the fields of such a file, such as x y z label; of a KITTI scan x y z intensity.
 SAW_NDT_EXPORT std::vector<std::string> pointCloudFields(const std::filesystem::path& path);
@@ -26,7 +26,7 @@ SAW_NDT_EXPORT std::vector<std::string> pointCloudFields(const std::filesystem::
 /// Writes a compressed binary PCD file, whole or not at all. Throws Error, also for a cloud without points, which the
 /// format cannot hold.
 template <typename PointT>
-void writePcd(const std::filesystem::path& path, const pcl::PointCloud<PointT>& cloud);
+SAW_NDT_EXPORT void writePcd(const std::filesystem::path& path, const pcl::PointCloud<PointT>& cloud);
 
 /// The same for points of any type, as pcl::toPCLPointCloud2() gives them.
 SAW_NDT_EXPORT void writePcd(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud,

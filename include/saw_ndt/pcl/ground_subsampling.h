@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/segmentation/ground_sampler.h"
 
@@ -15,7 +16,7 @@ namespace saw_ndt {
 /// setLabels(), or else from the `label` field of the points. Compiled for pcl::PointXYZ, PointXYZI and PointXYZL; for
 /// other types include impl/ground_subsampling.hpp.
 template <typename PointT>
-class GroundSubsampling : public pcl::FilterIndices<PointT> {
+class SAW_NDT_EXPORT GroundSubsampling : public pcl::FilterIndices<PointT> {
  public:
   using PointCloud = pcl::PointCloud<PointT>;
   using Ptr = pcl::shared_ptr<GroundSubsampling<PointT>>;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 
@@ -20,7 +21,7 @@ namespace saw_ndt {
 /// not looked at: their label is Noise. Compiled for pcl::PointXYZ, PointXYZI and PointXYZL; for other types include
 /// impl/range_image_segmentation.hpp.
 template <typename PointT>
-class RangeImageSegmentation : public pcl::FilterIndices<PointT> {
+class SAW_NDT_EXPORT RangeImageSegmentation : public pcl::FilterIndices<PointT> {
  public:
   using PointCloud = pcl::PointCloud<PointT>;
   using Ptr = pcl::shared_ptr<RangeImageSegmentation<PointT>>;

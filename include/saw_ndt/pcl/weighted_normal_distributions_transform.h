@@ -3,6 +3,7 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/registration.h>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 
@@ -27,7 +28,7 @@ namespace saw_ndt {
 ///  - the target may lie anywhere: no bound on the extent of its voxel grid;
 ///  - the k-d tree of the target is built only when getFitnessScore() asks for it.
 template <typename PointSource, typename PointTarget, typename Scalar = float>
-class WeightedNormalDistributionsTransform : public pcl::Registration<PointSource, PointTarget, Scalar> {
+class SAW_NDT_EXPORT WeightedNormalDistributionsTransform : public pcl::Registration<PointSource, PointTarget, Scalar> {
   using Base = pcl::Registration<PointSource, PointTarget, Scalar>;
 
  public:
