@@ -44,12 +44,14 @@ if(NOT BUILD_SHARED_LIBS)
            COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${shared_build}
                    --build-generator ${CMAKE_GENERATOR} --build-project saw_ndt
                    --build-options ${consumer_options} -DBUILD_SHARED_LIBS=ON -DSAW_NDT_BUILD_TESTS=OFF
-                                   -DSAW_NDT_BUILD_BENCHMARKS=OFF
-                   --test-command ${shared_build}/apps/saw_ndt_localize -h)
+                                   -DSAW_NDT_BUILD_BENCHMARKS=OFF)
   add_test(NAME consumer.shared.install
            COMMAND ${CMAKE_COMMAND} --install ${shared_build} --config $<CONFIG> --prefix ${shared_copy})
   set_tests_properties(consumer.shared.build PROPERTIES FIXTURES_SETUP built_shared TIMEOUT 1500)
   set_tests_properties(consumer.shared.install PROPERTIES FIXTURES_REQUIRED built_shared FIXTURES_SETUP installed_shared)
+  add_test(NAME consumer.shared.app COMMAND ${shared_copy}/bin/saw_ndt_localize -h)
+  set_tests_properties(consumer.shared.app PROPERTIES FIXTURES_REQUIRED installed_shared PASS_REGULAR_EXPRESSION
+                                                      "Usage: saw_ndt_localize")
   saw_ndt_add_consumer_tests(shared ${shared_copy})
 endif()
 

@@ -27,6 +27,7 @@ int main() {
   builder.addScan(saw_ndt::viewOf(corner), {}, Eigen::Isometry3d::Identity());
   saw_ndt::LocalizerOptions options;
   options.method = saw_ndt::LocalizationMethod::named("classical");
+  options.source_voxel_size_m = 0.0;  // every point
   saw_ndt::Localizer localizer(builder.build(), options);
   localizer.setInitialPose(Eigen::Isometry3d::Identity());
   const saw_ndt::LocalizationResult result = localizer.localize(saw_ndt::viewOf(scan), 0.0);
