@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/instruction_set.h"
 #include "common/executor.h"
+#include "common/instruction_set.h"
 
 namespace saw_ndt {
 

@@ -22,6 +22,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 constexpr int kMostScans = 70;

@@ -189,7 +189,8 @@ double milliseconds(const Measurement& measurement, int threads) {
 
 void print(const Program& program, const std::set<saw_ndt::internal::InstructionSet>& sets) {
   std::cout << "\n" << program.title << "\n\n| stage |";
-  for (const saw_ndt::internal::InstructionSet set : sets) std::cout << " " << saw_ndt::internal::toString(set) << ", ms |";
+  for (const saw_ndt::internal::InstructionSet set : sets)
+    std::cout << " " << saw_ndt::internal::toString(set) << ", ms |";
   std::cout << " PCL, ms | PCL / ours | ours, 1 thread | PCL |\n|---|";
   for (std::size_t i = 0; i < sets.size() + 4; ++i) std::cout << "---|";
   std::cout << "\n";

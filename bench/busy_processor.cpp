@@ -17,9 +17,9 @@
 #include "app_options.h"
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
+#include "evaluation/statistics.h"
 #include "progress_bar.h"
 #include "saw_ndt/common/error.h"
-#include "evaluation/statistics.h"
 #include "saw_ndt/localization/localizer.h"
 
 namespace {
@@ -174,7 +174,8 @@ int main(int argc, char** argv) {
       for (const std::string& method : methods) {
         for (const int threads : thread_counts) {
           const Times times = measure(drive, method, threads, settings, progress);
-          const saw_ndt::internal::DurationStatistics statistics = saw_ndt::internal::durationStatistics(times.total_ms);
+          const saw_ndt::internal::DurationStatistics statistics =
+              saw_ndt::internal::durationStatistics(times.total_ms);
           std::cout << " " << statistics.mean << " / " << statistics.p95 << " / " << statistics.max << " |";
           rejected += times.rejected;
         }

@@ -2,8 +2,8 @@
 // pcl::NormalDistributionsTransform beside them.
 
 #include "benchmark_program.h"
-#include "common/executor.h"
 #include "benchmark_scans.h"
+#include "common/executor.h"
 #include "perturbed_starts.h"
 #include "registration/ndt_evaluation.h"
 #include "registration_case.h"

@@ -65,7 +65,8 @@ using Benchmark = void (*)(benchmark::State&, const saw_ndt::SourcePoints&, std:
 
 // By one thread with the best instructions.
 void add(const std::string& stage_and_size, Benchmark run, Source make, std::size_t points, std::size_t map_voxels) {
-  const std::string name = stage_and_size + "/" + saw_ndt::internal::toString(saw_ndt::internal::instructionSet()) + "/threads:1";
+  const std::string name =
+      stage_and_size + "/" + saw_ndt::internal::toString(saw_ndt::internal::instructionSet()) + "/threads:1";
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { run(state, make(points), map_voxels, 1); });
 }
 

@@ -5,10 +5,10 @@
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
 #include "common/executor.h"
-#include "segmentation/segmentation_stages.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
+#include "segmentation/segmentation_stages.h"
 
 namespace {
 

@@ -24,8 +24,8 @@ constexpr double kPrincipalPointX_px = 620.0;
 constexpr double kPrincipalPointY_px = 188.0;
 constexpr std::array<double, 4> kCameraPlaces_m = {0.0, -0.54, 0.06, -0.48};  // to the left of the left grey one
 
-/// Reads the records of a binary file without a header, into memory that `values` may bring along; Error unless there is
-/// at least one and the last one is whole.
+/// Reads the records of a binary file without a header, into memory that `values` may bring along; Error unless there
+/// is at least one and the last one is whole.
 template <typename Value>
 void readRecords(const fs::path& path, std::vector<Value>& values) {
   std::ifstream stream = openInputFile(path);

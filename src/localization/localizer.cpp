@@ -10,6 +10,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 Matrix6d inverseOrZero(const Matrix6d& information) {

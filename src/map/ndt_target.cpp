@@ -12,6 +12,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 using internal::CoarseSums;

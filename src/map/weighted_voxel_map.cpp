@@ -15,6 +15,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 double metresPerStep(const MapOrigin& origin) { return origin.resolution_m / kStepsPerVoxel; }

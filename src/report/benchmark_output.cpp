@@ -10,6 +10,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 using Json = nlohmann::ordered_json;

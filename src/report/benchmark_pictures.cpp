@@ -13,6 +13,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 constexpr int kWidth_px = 1000, kPanel_px = 112, kTitle_px = 45, kAxis_px = 62;

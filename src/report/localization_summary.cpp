@@ -17,6 +17,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 double peakResidentMegabytes() {

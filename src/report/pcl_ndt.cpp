@@ -17,6 +17,7 @@ extern template class pcl::NormalDistributionsTransform<pcl::PointXYZ, pcl::Poin
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 constexpr double kTransformationEpsilon = 1e-4;

@@ -18,6 +18,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 constexpr int kRingGroups = 8;

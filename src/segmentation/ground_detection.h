@@ -13,7 +13,8 @@ namespace saw_ndt::internal {
 class GroundDetection {
  public:
   /// Writes 1 for every pixel of the image that is ground and 0 for every other, row-major. The options have been
-  /// checked, and the image was projected with the sensor model. In one thread: handing parts to others would take as long.
+  /// checked, and the image was projected with the sensor model. In one thread: handing parts to others would take as
+  /// long.
   void detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
               std::vector<std::uint8_t>& ground);
 

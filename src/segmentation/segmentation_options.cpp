@@ -9,6 +9,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 using Fields = std::vector<std::pair<std::string, std::string>>;

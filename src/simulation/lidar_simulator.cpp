@@ -17,6 +17,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 // The LiDAR's pose during a scan is read off at this many moments; in between, straight lines miss it by less than a

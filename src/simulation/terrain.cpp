@@ -11,6 +11,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 // The road's height at a point is a mean over the stations within this distance, the near ones weighing most.

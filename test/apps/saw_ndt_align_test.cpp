@@ -14,6 +14,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 Eigen::Isometry3d transformIn(const nlohmann::json& json) {

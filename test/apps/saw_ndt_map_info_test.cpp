@@ -16,6 +16,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 class MapInfoApp : public ::testing::Test {

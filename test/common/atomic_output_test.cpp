@@ -14,6 +14,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 std::string contentOf(const std::filesystem::path& path) {

@@ -9,6 +9,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 class InstructionSetTest : public testing::Test {

@@ -14,6 +14,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 class SequenceMap : public ::testing::Test {

@@ -11,6 +11,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 namespace fs = std::filesystem;

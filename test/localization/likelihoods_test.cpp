@@ -12,6 +12,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 /// Every point against every voxel: a voxel counts that is the point's own or shares a face with it.

@@ -16,6 +16,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;

@@ -15,6 +15,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 struct Point {

@@ -6,17 +6,18 @@
 #include <limits>
 #include <vector>
 
+#include "expect_throws.h"
 #include "map/map_tile.h"
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/version.h"
 #include "temporary_folder.h"
-#include "expect_throws.h"
 
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 using internal::inMapOrder;

@@ -7,6 +7,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 using internal::MetadataFault;

@@ -2,15 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include "expect_throws.h"
 #include "map/map_tile.h"
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
 #include "temporary_folder.h"
-#include "expect_throws.h"
 
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 class NdtTargetFile : public ::testing::Test {

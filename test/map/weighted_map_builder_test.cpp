@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "expect_throws.h"
 #include "map_fixtures.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/version.h"
 #include "temporary_folder.h"
-#include "expect_throws.h"
 
 namespace saw_ndt {
 namespace {

@@ -14,6 +14,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 Eigen::Isometry3d printedTransform(const AppResult& result) {

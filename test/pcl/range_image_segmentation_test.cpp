@@ -18,6 +18,7 @@ POINT_CLOUD_REGISTER_POINT_STRUCT(PointWithRing, (float, x, x)(float, y, y)(floa
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 SensorModel testSensor() { return SensorModel::evenlySpaced("test", 32, 720, 6.0, -25.0); }

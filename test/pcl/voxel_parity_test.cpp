@@ -9,6 +9,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 /// Builds both grids of 1 m voxels: at 1 m PCL's single-precision product coordinate * (1 / leaf size) is exact, so

@@ -8,6 +8,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 // Functions of the kind that More and Thuente test with: a valley at a known place.

@@ -11,6 +11,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 NdtTarget cornerMap(const Eigen::Isometry3d& T_map_corner = Eigen::Isometry3d::Identity()) {

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "expect_throws.h"
 #include "registration/registration_fixtures.h"
 #include "temporary_folder.h"
-#include "expect_throws.h"
 
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 Eigen::Isometry3d moved(const Eigen::Isometry3d& T, const Vector6d& step) {

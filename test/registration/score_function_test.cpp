@@ -7,6 +7,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 // Magnusson's function is fitted to -log(c1 exp(-m/2) + c2) at m = 0, 1 and infinity, with c1 = 10 (1 - ratio) and

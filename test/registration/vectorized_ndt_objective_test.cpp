@@ -13,6 +13,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 class VectorizedNdtObjectiveTest : public testing::Test {

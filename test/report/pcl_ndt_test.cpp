@@ -11,6 +11,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 class PclNdtTest : public ::testing::Test {

@@ -12,6 +12,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 const float kNan = std::numeric_limits<float>::quiet_NaN();

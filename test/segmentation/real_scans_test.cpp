@@ -7,16 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "segmentation/range_image.h"
 #include "real_data.h"
 #include "report/segmentation_score.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
+#include "segmentation/range_image.h"
 
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 template <typename Value>

@@ -13,6 +13,7 @@
 namespace saw_ndt {
 
 using namespace internal;
+
 namespace {
 
 // One degree between rows, half a degree between columns; row 6 looks level ahead.

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "temporary_folder.h"
 #include "expect_throws.h"
+#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {

@@ -12,8 +12,8 @@ namespace saw_ndt {
 
 /// A drive localized scan by scan; one element a scan, in order.
 struct DriveLocalization {
-  std::vector<int> scans;          ///< numbers
-  std::vector<std::string> names;  ///< see RecordedScan::name
+  std::vector<int> scans;             ///< numbers
+  std::vector<std::string> names;     ///< see RecordedScan::name
   std::vector<std::string> failures;  ///< why a scan could not be read, empty where it could
   std::vector<LocalizationResult> results;
   std::vector<Eigen::Isometry3d> T_map_lidar_reference;  ///< reference poses; empty where a scan has none
