@@ -7,8 +7,9 @@
 
 namespace saw_ndt {
 
-template <>
-const int EigenAlignment<EIGEN_MAX_ALIGN_BYTES>::must_be_that_of_the_saw_ndt_library = EIGEN_MAX_ALIGN_BYTES;
+template <int kEigenMaxAlignBytes>
+const int EigenAlignment<kEigenMaxAlignBytes>::must_be_that_of_the_saw_ndt_library = kEigenMaxAlignBytes;
+template struct EigenAlignment<EIGEN_MAX_ALIGN_BYTES>;
 
 double wrappedAngle(double angle) {
   const double wrapped = std::remainder(angle, 2.0 * kPi);

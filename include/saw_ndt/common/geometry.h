@@ -12,9 +12,10 @@ namespace saw_ndt {
 /// file that includes this header refers to the symbol of its own alignment. The library has the symbol of its own
 /// alone, so that such a program does not link instead of computing rubbish.
 template <int kEigenMaxAlignBytes>
-struct EigenAlignment {
-  SAW_NDT_EXPORT static const int must_be_that_of_the_saw_ndt_library;
+struct SAW_NDT_EXPORT EigenAlignment {
+  static const int must_be_that_of_the_saw_ndt_library;
 };
+extern template struct EigenAlignment<EIGEN_MAX_ALIGN_BYTES>;
 namespace {
 [[maybe_unused, gnu::used]] const int* const eigen_alignment_of_this_file =
     &EigenAlignment<EIGEN_MAX_ALIGN_BYTES>::must_be_that_of_the_saw_ndt_library;
