@@ -8,8 +8,6 @@
 
 namespace saw_ndt {
 
-using namespace internal;
-
 namespace {
 
 /// Hands the scans of a source to several threads, until one of them fails.

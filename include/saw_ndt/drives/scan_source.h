@@ -13,7 +13,7 @@ namespace saw_ndt {
 /// A scan of a recording and what is known of it.
 struct RecordedScan {
   int number = 0;                                ///< within the recording, from 0
-  std::string name;                              ///< its own name, for messages, such as velodyne/000012.bin
+  std::string name;                              ///< its own name, for messages, such as 000012.bin
   double stamp_s = 0.0;                          ///< time of the scan
   std::vector<LidarPoint> points;                ///< in the order of the sensor
   std::optional<Eigen::Isometry3d> T_map_lidar;  ///< reference pose
