@@ -54,12 +54,14 @@ void GroundDetection::detectByInclination(const RangeImage& image, const SensorM
 
 float GroundDetection::estimatedSensorHeight(const RangeImage& image, const GroundOptions& options) {
   if (options.sensor_height_m > 0.0) return static_cast<float>(options.sensor_height_m);
-  // The lowest level pair of returns of each column lies on the ground in most of the columns.
+  // The lowest level pair of returns of a column lies on the ground in most of the columns. A prime number, since a slow
+  // sensor may leave every other column empty.
+  constexpr int kColumnsApart = 7;
   const float limit = tangent(options.slope_deg);
   const int columns = image.columns();
   candidate_heights_.clear();
-  candidate_heights_.reserve(static_cast<std::size_t>(columns));
-  for (int column = 0; column < columns; ++column) {
+  candidate_heights_.reserve(static_cast<std::size_t>(columns / kColumnsApart + 1));
+  for (int column = 0; column < columns; column += kColumnsApart) {
     for (int row = image.rows() - 1; row > 0; --row) {
       const int lower = row * columns + column;
       const int upper = lower - columns;
