@@ -12,6 +12,10 @@ constexpr char kVersionKey[] = "software_version";
 constexpr char kSegmentationKey[] = "segmentation";
 constexpr char kKnown[] = "known";
 constexpr char kNone[] = "none";
+// Files of version 2 that were written before there were feet have neither key.
+constexpr std::string_view kFootAngleKey = "ground.foot_angle_deg";
+constexpr std::string_view kFootHeightKey = "ground.foot_height_m";
+constexpr double kNoFeetAngleDeg = 90.0;
 constexpr std::string_view kBetween = " = ";
 
 // The values of a text by their keys.
@@ -44,6 +48,8 @@ class Lines {
       failAt(key, "damaged: the metadata gives no valid " + std::string(key));
     }
   }
+
+  bool gives(std::string_view key) const { return values_.count(key) != 0; }
 
   void failAt(std::string_view key, const std::string& reason) {
     fail(static_cast<std::size_t>(values_.at(key).data() - text_.data()), reason);
@@ -87,7 +93,12 @@ std::optional<MetadataFault> readMetadata(std::string_view text, MapOrigin& orig
     return lines.fault();
   }
   SegmentationOptions options;
-  forEachField(options, [&lines](const char* name, auto& value) { lines.read(name, value); });
+  const bool knows_feet = lines.gives(kFootAngleKey) || lines.gives(kFootHeightKey);
+  if (!knows_feet) options.ground.foot_angle_deg = kNoFeetAngleDeg;
+  forEachField(options, [&](const std::string_view name, auto& value) {
+    if (!knows_feet && (name == kFootAngleKey || name == kFootHeightKey)) return;
+    lines.read(name, value);
+  });
   try {
     if (!lines.fault()) options.check();
   } catch (const std::invalid_argument& error) {

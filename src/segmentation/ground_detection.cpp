@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
@@ -31,6 +32,7 @@ void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor,
   neighbour_sums_.ground.resize(columns + 2);
   ground.resize(image.range().size());
   grow(image, options, 0, columns);
+  if (options.foot_angle_deg < 90.0) doubtFeet(image, sensor, options);
   for (int row = 0; row < image.rows(); ++row) settle(image, row, options.smooths, neighbour_sums_, ground);
 }
 
@@ -88,6 +90,23 @@ void GroundDetection::grow(const RangeImage& image, const GroundOptions& options
             {image.range().data() + begin, image.horizontalRange().data() + begin, image.height().data() + begin,
              last_range_.data() + first_column, last_height_.data() + first_column,
              profile_height_.data() + first_column, states_.data() + begin});
+  }
+}
+
+void GroundDetection::doubtFeet(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options) {
+  const auto columns = static_cast<std::size_t>(image.columns());
+  obstacle_range_.assign(columns, 0.0F);
+  obstacle_height_.assign(columns, std::numeric_limits<float>::infinity());
+  FootLimits limits = {tangent(options.foot_angle_deg), static_cast<float>(options.foot_height_m), 0.0F};
+  for (int row = 0; row < image.rows(); ++row) {
+    // An upright surface is met that much higher by the beam above.
+    if (row > 0) {
+      limits.rise_of_range = tangent(sensor.elevations_deg[row - 1]) - tangent(sensor.elevations_deg[row]);
+    }
+    const std::size_t begin = static_cast<std::size_t>(row) * columns;
+    internal::doubtFeet(columns, limits,
+                        {image.horizontalRange().data() + begin, image.height().data() + begin, obstacle_range_.data(),
+                         obstacle_height_.data(), states_.data() + begin});
   }
 }
 

@@ -29,12 +29,15 @@ class GroundDetection {
                                   std::vector<std::uint8_t>& ground);
   float estimatedSensorHeight(const RangeImage& image, const GroundOptions& options);
   void grow(const RangeImage& image, const GroundOptions& options, std::size_t first_column, std::size_t columns);
+  void doubtFeet(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options);
   void settle(const RangeImage& image, int row, bool smooths, NeighbourSums& sums,
               std::vector<std::uint8_t>& ground) const;
 
   std::vector<float> last_range_;
   std::vector<float> last_height_;
   std::vector<float> profile_height_;
+  std::vector<float> obstacle_range_;
+  std::vector<float> obstacle_height_;
   std::vector<float> candidate_heights_;
   std::vector<std::uint8_t> states_;
   std::vector<std::uint8_t> no_returns_;

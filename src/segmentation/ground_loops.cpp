@@ -37,6 +37,31 @@ void growRowOfPixels(std::size_t columns, const GrowthLimits& limits, const Grow
              row.profile_height, row.states);
 }
 
+HWY_INLINE void doubtFeetOfPixels(std::size_t columns, const FootLimits limits, const float* __restrict range,
+                                  const float* __restrict height, float* __restrict obstacle_range,
+                                  float* __restrict obstacle_height, std::uint8_t* __restrict states) {
+  for (std::size_t column = 0; column < columns; ++column) {
+    const float r = range[column];
+    const float z = height[column];
+    const float rise = obstacle_height[column] - z;
+    const float least_rise = limits.slope * __builtin_fabsf(obstacle_range[column] - r);
+    const float counted_rise = rise < limits.rise ? rise : limits.rise;
+    const int is_close = rise <= limits.rise + limits.rise_of_range * r ? 1 : 0;
+    const int is_foot = counted_rise >= least_rise ? is_close : 0;
+    const int grown = states[column];
+    const int state = grown == kGroundState ? kGroundState - is_foot : grown;
+    const bool is_obstacle = (state == kReturnState) | (state == kDoubtfulState);
+    obstacle_range[column] = is_obstacle ? r : obstacle_range[column];
+    obstacle_height[column] = is_obstacle ? z : obstacle_height[column];
+    states[column] = static_cast<std::uint8_t>(state);
+  }
+}
+
+void doubtFeetOfRow(std::size_t columns, const FootLimits& limits, const FootRow& row) {
+  doubtFeetOfPixels(columns, limits, row.horizontal_range, row.height, row.obstacle_range, row.obstacle_height,
+                    row.states);
+}
+
 HWY_INLINE std::uint8_t is(bool condition) { return static_cast<std::uint8_t>(condition ? 1 : 0); }
 
 void sumPixels(std::size_t columns, const std::uint8_t* __restrict above, const std::uint8_t* __restrict middle,
@@ -75,11 +100,16 @@ HWY_AFTER_NAMESPACE();
 namespace saw_ndt::internal {
 
 HWY_EXPORT(growRowOfPixels);
+HWY_EXPORT(doubtFeetOfRow);
 HWY_EXPORT(sumPixels);
 HWY_EXPORT(settlePixels);
 
 void growRow(std::size_t columns, const GrowthLimits& limits, const GrowingRow& row) {
   SAW_NDT_DISPATCH(growRowOfPixels)(columns, limits, row);
+}
+
+void doubtFeet(std::size_t columns, const FootLimits& limits, const FootRow& row) {
+  SAW_NDT_DISPATCH(doubtFeetOfRow)(columns, limits, row);
 }
 
 void sumColumns(std::size_t columns, const std::uint8_t* above, const std::uint8_t* middle, const std::uint8_t* below,

@@ -24,6 +24,8 @@ void forEachField(Options& options, const Visit& visit) {
   visit("ground.slope_deg", options.ground.slope_deg);
   visit("ground.step_tolerance_m", options.ground.step_tolerance_m);
   visit("ground.profile_tolerance_m", options.ground.profile_tolerance_m);
+  visit("ground.foot_angle_deg", options.ground.foot_angle_deg);
+  visit("ground.foot_height_m", options.ground.foot_height_m);
   visit("ground.smooths", options.ground.smooths);
   visit("components.connection_angle_deg", options.components.connection_angle_deg);
   visit("components.min_points", options.components.min_points);

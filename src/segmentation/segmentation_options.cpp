@@ -33,6 +33,8 @@ void GroundOptions::check() const {
   checkOption(in(slope_deg, 0.0, 60.0), "slope_deg", slope_deg, "0 to 60");
   checkOption(in(step_tolerance_m, 0.0, 10.0), "step_tolerance_m", step_tolerance_m, "0 to 10");
   checkOption(in(profile_tolerance_m, 0.0, 10.0), "profile_tolerance_m", profile_tolerance_m, "0 to 10");
+  checkOption(in(foot_angle_deg, 0.0, 90.0), "foot_angle_deg", foot_angle_deg, "0 to 90");
+  checkOption(in(foot_height_m, 0.0, 10.0), "foot_height_m", foot_height_m, "0 to 10");
 }
 
 void ComponentOptions::check() const {

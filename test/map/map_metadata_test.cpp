@@ -33,6 +33,8 @@ SegmentationOptions unusualOptions() {
   options.ground.slope_deg = 8.3;
   options.ground.step_tolerance_m = 0.07;
   options.ground.profile_tolerance_m = 0.16;
+  options.ground.foot_angle_deg = 31.5;
+  options.ground.foot_height_m = 0.11;
   options.ground.smooths = false;
   options.components = {61.5, 31, 6, 4};
   return options;
@@ -71,8 +73,10 @@ TEST(MapMetadata, IsTextOfKeysAndValues) {
   EXPECT_EQ(metadataText(origin), "software_version = \nsegmentation = none\n");
   const std::string text = metadataText(originWith({}));
   EXPECT_EQ(text.rfind("software_version = 3.2.1\nsegmentation = known\nsensor.name = HDL-64E\n", 0), 0U) << text;
-  EXPECT_NE(text.find("\nground.step_tolerance_m = 0.06\nground.profile_tolerance_m = 0.15\nground.smooths = true\n"),
-            std::string::npos)
+  EXPECT_NE(
+      text.find("\nground.step_tolerance_m = 0.08\nground.profile_tolerance_m = 0.12\nground.foot_angle_deg = 20\n"
+                "ground.foot_height_m = 0.1\nground.smooths = true\n"),
+      std::string::npos)
       << text;
   EXPECT_EQ(text.back(), '\n');
 }
@@ -82,6 +86,18 @@ TEST(MapMetadata, UnknownKeysArePassedOver) {
   const std::string text = metadataText(originWith({}));
   EXPECT_FALSE(readMetadata("later = 1\n" + text + "ground.later = a = b\n", origin));
   EXPECT_TRUE(origin.segmentation);
+}
+
+TEST(MapMetadata, BeforeThereWereFeetNothingWasAFoot) {
+  SegmentationOptions options;
+  std::string text = metadataText(originWith(options));
+  for (const char* line : {"ground.foot_angle_deg = 20\n", "ground.foot_height_m = 0.1\n"})
+    text = replaced(text, line, "");
+  MapOrigin read;
+  ASSERT_FALSE(readMetadata(text, read));
+  ASSERT_TRUE(read.segmentation);
+  options.ground.foot_angle_deg = 90.0;
+  EXPECT_FALSE(firstDifference(*read.segmentation, options));
 }
 
 TEST(MapMetadata, AMissingOrMalformedKeyIsNamedWithItsPlace) {
@@ -104,13 +120,13 @@ TEST(MapMetadata, AMissingOrMalformedKeyIsNamedWithItsPlace) {
   expectMalformed("sensor.columns", "1800", "");
   expectMalformed("sensor.columns", "1800", "99999999999999");
   expectMalformed("sensor.elevations_deg", "2.45 2.08", "2.45  2.08");
-  expectMalformed("ground.slope_deg", "8", "8 ");
-  expectMalformed("ground.slope_deg", "8", "eight");
+  expectMalformed("ground.slope_deg", "10", "10 ");
+  expectMalformed("ground.slope_deg", "10", "ten");
   expectMalformed("ground.rule", "growing", "Growing");
   expectMalformed("ground.smooths", "true", "1");
   expectFault(text.substr(0, text.size() - 1), text.rfind('\n', text.size() - 2) + 1, "not `key = value`");
   expectFault("\n" + text, 0, "not `key = value`");
-  expectFault(replaced(text, "ground.slope_deg = 8", "ground.slope_deg = 80"), 0, "slope_deg = 80");
+  expectFault(replaced(text, "ground.slope_deg = 10", "ground.slope_deg = 80"), 0, "slope_deg = 80");
 }
 
 }  // namespace

@@ -242,7 +242,7 @@ TEST(WeightedMapBuilder, BuildersOfOtherSegmentationsDoNotMerge) {
   addCloud(builder, mixedCloud(1, 100), Eigen::Isometry3d::Identity());
   segmentation.ground.slope_deg = 9.25;
   expectThrows<std::invalid_argument>([&] { builder.merge(WeightedMapBuilder(1.0, segmentation)); },
-                                      {"ground.slope_deg", " 8 ", " 9.25 "});
+                                      {"ground.slope_deg", " 10 ", " 9.25 "});
   expectThrows<std::invalid_argument>([&] { builder.merge(WeightedMapBuilder(1.0)); }, {"known"});
   EXPECT_EQ(builder.origin().scan_count, 1U);
 }

@@ -143,14 +143,22 @@ TEST(RealGround, AgreesWithTheLabelsOfPeople) {
   if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
   struct Limit {
     GroundRule rule;
-    double f1;
+    double mean_f1;
+    double mean_iou;
+    double least_f1;
   };
-  for (const Limit& limit : {Limit{GroundRule::INCLINATION, 0.89}, Limit{GroundRule::GROWING, 0.96}}) {
-    GroundScore total;
+  // Somewhat below what was found: 0.894, 0.811 and 0.832; 0.9754, 0.9521 and 0.9629.
+  for (const Limit& limit :
+       {Limit{GroundRule::INCLINATION, 0.89, 0.80, 0.82}, Limit{GroundRule::GROWING, 0.975, 0.951, 0.96}}) {
+    double f1 = 0.0, iou = 0.0;
     for (const char* sequence : {"00", "01", "03"}) {
-      total += groundScoreOf(sequence, limit.rule);
+      const GroundScore score = groundScoreOf(sequence, limit.rule);
+      EXPECT_GT(score.f1(), limit.least_f1) << toString(limit.rule) << " " << sequence;
+      f1 += score.f1() / 3.0;
+      iou += score.iou() / 3.0;
     }
-    EXPECT_GT(total.f1(), limit.f1);
+    EXPECT_GT(f1, limit.mean_f1) << toString(limit.rule);
+    EXPECT_GT(iou, limit.mean_iou) << toString(limit.rule);
   }
 }
 

@@ -34,9 +34,11 @@ TEST(FirstDifference, NamesTheFieldAndBothValues) {
   expectDifference([](Options& o) { o.ground.inclination_top_elevation_deg = 1; },
                    "ground.inclination_top_elevation_deg", "-2", "1");
   expectDifference([](Options& o) { o.ground.sensor_height_m = 1.73; }, "ground.sensor_height_m", "0", "1.73");
-  expectDifference([](Options& o) { o.ground.slope_deg = 8.5; }, "ground.slope_deg", "8", "8.5");
-  expectDifference([](Options& o) { o.ground.step_tolerance_m = 0.1; }, "ground.step_tolerance_m", "0.06", "0.1");
-  expectDifference([](Options& o) { o.ground.profile_tolerance_m = 1; }, "ground.profile_tolerance_m", "0.15", "1");
+  expectDifference([](Options& o) { o.ground.slope_deg = 8.5; }, "ground.slope_deg", "10", "8.5");
+  expectDifference([](Options& o) { o.ground.step_tolerance_m = 0.1; }, "ground.step_tolerance_m", "0.08", "0.1");
+  expectDifference([](Options& o) { o.ground.profile_tolerance_m = 1; }, "ground.profile_tolerance_m", "0.12", "1");
+  expectDifference([](Options& o) { o.ground.foot_angle_deg = 45; }, "ground.foot_angle_deg", "20", "45");
+  expectDifference([](Options& o) { o.ground.foot_height_m = 0; }, "ground.foot_height_m", "0.1", "0");
   expectDifference([](Options& o) { o.ground.smooths = false; }, "ground.smooths", "true", "false");
   expectDifference([](Options& o) { o.components.connection_angle_deg = 50; }, "components.connection_angle_deg", "60",
                    "50");

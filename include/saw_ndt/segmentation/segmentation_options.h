@@ -13,8 +13,8 @@ enum class GroundRule {
   /// The paper's and LeGO-LOAM's: the line between vertically adjacent pixels is nearly level.
   INCLINATION,
   /// Ground is followed outward from below the sensor, column by column: a return belongs to it where it lies on from
-  /// the last ground return and near the height that ground may have reached by then; then neighbours settle what is
-  /// doubtful.
+  /// the last ground return and near the height that ground may have reached by then. What lies at the foot of a return
+  /// that is no ground becomes doubtful; then neighbours settle what is doubtful.
   GROWING,
 };
 
@@ -31,13 +31,20 @@ struct SAW_NDT_EXPORT GroundOptions {
   /// Growing: height of the sensor above ground in metres; 0: estimated in each scan.
   double sensor_height_m = 0.0;
   /// Growing: greatest slope of ground in degrees, 0 to 60.
-  double slope_deg = 8.0;
+  double slope_deg = 10.0;
   /// Growing: by how many metres the height of a ground return may miss that of the last one in its column, beyond the
   /// slope: roughness and range noise.
-  double step_tolerance_m = 0.06;
+  double step_tolerance_m = 0.08;
   /// Growing: by how many metres ground may stand out from a profile that rises no faster than the slope: a kerb. It
   /// keeps ground from climbing a wall by many small steps.
-  double profile_tolerance_m = 0.15;
+  double profile_tolerance_m = 0.12;
+  /// Growing: a ground return is the foot of the next return above it in its column that is no ground where the line
+  /// between them is at least as steep as this angle in degrees, 0 to 90; 90: nothing is a foot.
+  double foot_angle_deg = 20.0;
+  /// Growing: by how many metres that return may be higher than its foot beyond the gap between two beams, 0 to 10. It
+  /// keeps ground that is seen under a vehicle or a branch. No more of the height counts for the angle, whatever the
+  /// beams: a foot is at most 0.27 m before or behind what it belongs to.
+  double foot_height_m = 0.1;
   /// Growing: whether each pixel is compared with its eight neighbours at last.
   bool smooths = true;
 
