@@ -56,8 +56,8 @@ void GroundDetection::detectByInclination(const RangeImage& image, const SensorM
 
 float GroundDetection::estimatedSensorHeight(const RangeImage& image, const GroundOptions& options) {
   if (options.sensor_height_m > 0.0) return static_cast<float>(options.sensor_height_m);
-  // The lowest level pair of returns of a column lies on the ground in most of the columns. A prime number, since a slow
-  // sensor may leave every other column empty.
+  // The lowest level pair of returns of a column lies on the ground in most of the columns. Some of them will do; how
+  // far apart is a prime number, since a sensor may leave every other column empty.
   constexpr int kColumnsApart = 7;
   const float limit = tangent(options.slope_deg);
   const int columns = image.columns();
