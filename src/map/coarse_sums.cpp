@@ -1,5 +1,6 @@
 #include "map/coarse_sums.h"
 
+#include <algorithm>
 #include <array>
 
 #include "map/map_order.h"
@@ -10,6 +11,11 @@ namespace {
 int floorDivide(int value, int divisor) {
   const int quotient = value / divisor;
   return value % divisor < 0 ? quotient - 1 : quotient;
+}
+
+// What is known for sure of a coarse voxel: one of its fine ones was met by so many scans.
+void countScans(const LabelledVoxelSums& from, LabelledVoxelSums& into) {
+  into.scan_count = std::max(into.scan_count, from.scan_count);
 }
 
 }  // namespace
@@ -37,8 +43,15 @@ void CoarseSums::add(const LabelledVoxelSums* first, const LabelledVoxelSums* la
       places[label] = table_.placeOf(parent, first->label);
       known[label] = true;
     }
-    table_.sums(places[label]) += first->sums.shifted(shift);
+    LabelledVoxelSums& entry = table_.entry(places[label]);
+    entry.sums += first->sums.shifted(shift);
+    countScans(*first, entry);
   }
+}
+
+void CoarseSums::add(const CoarseSums& other) {
+  table_.add(other.table_,
+             [this](std::size_t place, const LabelledVoxelSums& from) { countScans(from, table_.entry(place)); });
 }
 
 std::vector<LabelledVoxelSums> CoarseSums::takeInMapOrder() {

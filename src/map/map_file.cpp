@@ -51,6 +51,7 @@ bool decoded(const MapEntryLayout& layout, const Eigen::Vector3i& tile, Labelled
   }
   entry.label = static_cast<StructuralLabel>(layout.label);
   entry.sums.count = layout.count.value();
+  entry.scan_count = layout.scan_count.value();
   for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) entry.sums.sum[i] = layout.sum[i].value();
   for (std::size_t i = 0; i < entry.sums.product.size(); ++i) entry.sums.product[i] = layout.product[i].value();
   return valid && canBeSums(entry.sums);
@@ -99,7 +100,7 @@ void MapFileReader::readMagicAndVersion() {
   version_ = read<boost::endian::little_uint32_buf_t>(kMagicSize).value();
   if (version_ < kFirstMapVersion || version_ > kMapVersion) {
     fail(kMagicSize, "map version " + std::to_string(version_) + ", this program reads versions " +
-                         std::to_string(kFirstMapVersion) + " and " + std::to_string(kMapVersion));
+                         std::to_string(kFirstMapVersion) + " to " + std::to_string(kMapVersion));
   }
 }
 
@@ -270,6 +271,7 @@ void MapFileReader::decode(const MapPart& part, std::vector<LabelledVoxelSums>& 
   for (std::size_t i = 0; i < part.entry_count; ++i) {
     const MapEntryLayout layout = entryAt(part, i);
     if (!decoded(layout, tile.coordinate, entries[i]) || entries[i].sums.count > origin_.point_count ||
+        entries[i].scan_count > (version_ < kFirstVersionWithScans ? 0 : origin_.scan_count) ||
         (i > 0 && layout.order() <= before)) {
       fail(part.offset + i * kEntryBytes, "damaged: an entry is out of range or out of order");
     }

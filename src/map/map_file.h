@@ -10,7 +10,7 @@
 
 namespace saw_ndt::internal {
 
-// The map file, version 2, little-endian throughout:
+// The map file, version 3, little-endian throughout:
 //
 //   header     96 bytes: magic "SAWNDTM\n", u32 version, u32 header bytes, f64 resolution (m), u32 tile size (voxels),
 //              u32 flags (bit 0: labelled), u64 scans, u64 points, u64 entries, u64 tiles, u32 CRC-32 of the directory,
@@ -18,10 +18,12 @@ namespace saw_ndt::internal {
 //   metadata   how the map was made, as text (see map_metadata.h)
 //   directory  40 bytes a tile, ordered by z, y, x: i32 x y z, u32 CRC-32 of the tile's entries, u64 entries,
 //              u64 offset in the file, u64 zero
-//   entries    84 bytes each, tile after tile, ordered by z, y, x, label: u8 x y z within the tile, u8 label, u64
-//              count, i64 sum x y z, i64 product xx xy xz yy yz zz (VoxelSums)
+//   entries    84 bytes each, tile after tile, ordered by z, y, x, label: u8 x y z within the tile, u8 label, u40
+//              count, u24 scans that met it (at most 2^24 - 1), i64 sum x y z, i64 product xx xy xz yy yz zz
+//              (VoxelSums)
 //
-// Version 1, which is read as well, has no metadata, and zeros in their place in the header.
+// Versions 1 and 2 are read as well. They do not tell scans: their count has 64 bits. Version 1 has no metadata, and
+// zeros in their place in the header.
 //
 // Means, covariances, confidences and weights follow exactly from the sums and are not repeated. With the directory in
 // front, the tiles of a region can be found and checked without reading any other.

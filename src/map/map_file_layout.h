@@ -13,8 +13,9 @@ namespace saw_ndt::internal {
 // What map_file.h describes, byte for byte.
 
 constexpr char kMapMagic[9] = "SAWNDTM\n";
-constexpr std::uint32_t kMapVersion = 2;
+constexpr std::uint32_t kMapVersion = 3;
 constexpr std::uint32_t kFirstMapVersion = 1;
+constexpr std::uint32_t kFirstVersionWithScans = 3;
 constexpr std::uint32_t kLabelledFlag = 1;
 
 struct MapHeaderLayout {
@@ -48,7 +49,8 @@ static_assert(sizeof(MapTileLayout) == 40);
 struct MapEntryLayout {
   std::uint8_t place[3];  // in the tile
   std::uint8_t label;
-  boost::endian::little_uint64_buf_t count;
+  boost::endian::little_uint40_buf_t count;
+  boost::endian::little_uint24_buf_t scan_count;  // zero before version 3
   boost::endian::little_int64_buf_t sum[3];
   boost::endian::little_int64_buf_t product[6];
 
@@ -59,6 +61,9 @@ struct MapEntryLayout {
   }
 };
 static_assert(sizeof(MapEntryLayout) == 84);
+
+/// What MapEntryLayout has room for: where more scans met a voxel, this is told.
+constexpr std::uint32_t kMostScans = (1U << 24U) - 1;
 
 inline std::uint32_t checksumOf(const void* bytes, std::size_t size, std::uint32_t before = 0) {
   return static_cast<std::uint32_t>(crc32_z(before, static_cast<const Bytef*>(bytes), size));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 
 #include "common/atomic_output.h"
@@ -14,6 +15,7 @@ MapEntryLayout encoded(const LabelledVoxelSums& entry) {
   for (int axis = 0; axis < 3; ++axis) layout.place[axis] = static_cast<std::uint8_t>(place[axis]);
   layout.label = static_cast<std::uint8_t>(entry.label);
   layout.count = entry.sums.count;
+  layout.scan_count = std::min(entry.scan_count, kMostScans);
   for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) layout.sum[i] = entry.sums.sum[i];
   for (std::size_t i = 0; i < entry.sums.product.size(); ++i) layout.product[i] = entry.sums.product[i];
   return layout;

@@ -33,7 +33,8 @@ class VoxelSumsTable {
     }
     const std::size_t place = entries_.size();
     slots_[slot] = {hash, static_cast<std::uint32_t>(place)};
-    entries_.push_back({voxel, label, {}});
+    entries_.push_back({voxel, label, {}, 0});
+    last_scan_.push_back(0);
     if (2 * (place + 1) > slots_.size()) grow();
     return place;
   }
@@ -41,9 +42,22 @@ class VoxelSumsTable {
   /// The sums at a place in entries().
   VoxelSums& sums(std::size_t place) { return entries_[place].sums; }
 
-  void add(const LabelledVoxelSums& entry) { sums(placeOf(entry.voxel, entry.label)) += entry.sums; }
-  void add(const VoxelSumsTable& other) {
-    for (const LabelledVoxelSums& entry : other.entries_) add(entry);
+  LabelledVoxelSums& entry(std::size_t place) { return entries_[place]; }
+  /// Counts a scan, by its number from 1 on, towards the entry at a place, once however often it is told.
+  void meet(std::size_t place, std::uint32_t scan) {
+    if (last_scan_[place] == scan) return;
+    last_scan_[place] = scan;
+    ++entries_[place].scan_count;
+  }
+
+  /// Adds the sums of another table, and calls count_scans(place, entry of the other) for each of its entries.
+  template <typename CountScans>
+  void add(const VoxelSumsTable& other, const CountScans& count_scans) {
+    for (const LabelledVoxelSums& from : other.entries_) {
+      const std::size_t place = placeOf(from.voxel, from.label);
+      entries_[place].sums += from.sums;
+      count_scans(place, from);
+    }
   }
 
   /// The entries in the order in which their voxels were first met.
@@ -51,6 +65,7 @@ class VoxelSumsTable {
   /// The same, moved out. The table is empty afterwards.
   std::vector<LabelledVoxelSums> takeEntries() {
     slots_ = std::vector<Slot>(kMinSlots);
+    last_scan_.clear();
     return std::exchange(entries_, {});
   }
 
@@ -81,6 +96,7 @@ class VoxelSumsTable {
 
   std::vector<Slot> slots_;
   std::vector<LabelledVoxelSums> entries_;
+  std::vector<std::uint32_t> last_scan_;  // that met each entry
 };
 
 }  // namespace saw_ndt::internal

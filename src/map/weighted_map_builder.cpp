@@ -30,9 +30,9 @@ PointPlacement placementOf(const Eigen::Isometry3d& T_map_points, double resolut
   return placement;
 }
 
-// Adds points `first` to `last` of a cloud to a table; returns how many of them have a voxel.
+// Adds points `first` to `last` of the scan of a number to a table; returns how many of them have a voxel.
 std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::size_t first, std::size_t last,
-                       const PointPlacement& placement, VoxelSumsTable& table) {
+                       const PointPlacement& placement, std::uint32_t scan, VoxelSumsTable& table) {
   const auto block = std::make_unique<PointBlock>();
   block->stride = points.stride;
   std::uint64_t count = 0;
@@ -53,7 +53,9 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
       const auto run_size = static_cast<std::size_t>(run.sum_count[3]);
       if (block->label[point] != kNoVoxel) {
         const VoxelCoordinate voxel(block->voxel[0][point], block->voxel[1][point], block->voxel[2][point]);
-        VoxelSums& sums = table.sums(table.placeOf(voxel, static_cast<StructuralLabel>(block->label[point])));
+        const std::size_t place = table.placeOf(voxel, static_cast<StructuralLabel>(block->label[point]));
+        table.meet(place, scan);
+        VoxelSums& sums = table.sums(place);
         sums.count += run_size;
         for (std::size_t j = 0; j < 3; ++j) sums.sum[j] += run.sum_count[j];
         for (std::size_t j = 0; j < 6; ++j) sums.product[j] += run.product[j];
@@ -111,13 +113,13 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
                                  int threads) {
   if (!T_map_scan.matrix().allFinite()) throw std::invalid_argument("T_map_scan is not finite");
   requireKind(labels.known());
-  ++origin_.scan_count;
+  const auto scan = static_cast<std::uint32_t>(++origin_.scan_count);
   const PointPlacement placement = placementOf(T_map_scan, origin_.resolution_m);
   const std::size_t most_parts = std::max<std::size_t>(1, points.size / kMinPointsPerThread);
   const int part_count =
       static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(internal::threadCount(threads)), most_parts));
   if (part_count == 1) {
-    origin_.point_count += addRange(points, labels, 0, points.size, placement, *table_);
+    origin_.point_count += addRange(points, labels, 0, points.size, placement, scan, *table_);
     return;
   }
   struct Part {
@@ -127,10 +129,10 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
   std::vector<Part> parts(static_cast<std::size_t>(part_count));
   forEachChunk(threads, parts.size(), [&](std::size_t p, int) {
     const auto start = [&](std::size_t number) { return points.size * number / parts.size(); };
-    parts[p].point_count = addRange(points, labels, start(p), start(p + 1), placement, parts[p].table);
+    parts[p].point_count = addRange(points, labels, start(p), start(p + 1), placement, scan, parts[p].table);
   });
   for (const Part& part : parts) {
-    table_->add(part.table);
+    table_->add(part.table, [&](std::size_t place, const LabelledVoxelSums&) { table_->meet(place, scan); });
     origin_.point_count += part.point_count;
   }
 }
@@ -141,7 +143,9 @@ void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
   requireSameSegmentation(origin_.segmentation, other.origin_.segmentation);
   if (other.origin_.scan_count == 0) return;
   requireKind(other.origin_.labelled);
-  table_->add(*other.table_);
+  table_->add(*other.table_, [this](std::size_t place, const LabelledVoxelSums& from) {
+    table_->entry(place).scan_count += from.scan_count;
+  });
   origin_.scan_count += other.origin_.scan_count;
   origin_.point_count += other.origin_.point_count;
 }

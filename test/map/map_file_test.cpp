@@ -81,8 +81,28 @@ void checksum(std::string& bytes) {
   checksumFront(bytes);
 }
 
-/// What version 1 of the format would have made of a file.
+/// What version 2 of the format would have made of a file: the same without counts of scans.
+std::string asVersion2(std::string bytes) {
+  put(bytes, 8, std::uint32_t{2});
+  const auto tiles = valueAt<std::uint64_t>(bytes, 56);
+  const std::size_t directory = directoryOf(bytes);
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    const std::size_t record = directory + tile * kTileBytes;
+    const auto count = valueAt<std::uint64_t>(bytes, record + 16);
+    const auto offset = valueAt<std::uint64_t>(bytes, record + 24);
+    for (std::size_t entry = 0; entry < count; ++entry) {
+      bytes.replace(offset + entry * kEntryBytes + 9, 3, std::string(3, '\0'));
+    }
+    put(bytes, record + 12, crc32(bytes.substr(offset, count * kEntryBytes)));
+  }
+  put(bytes, 64, crc32(bytes.substr(directory, tiles * kTileBytes)));
+  put(bytes, 92, crc32(bytes.substr(0, 92)));
+  return bytes;
+}
+
+/// What version 1 would have made of it: without metadata, too.
 std::string asVersion1(std::string bytes) {
+  bytes = asVersion2(std::move(bytes));
   const std::size_t metadata = directoryOf(bytes) - kHeaderBytes;
   bytes.erase(kHeaderBytes, metadata);
   put(bytes, 8, std::uint32_t{1});
@@ -113,10 +133,10 @@ class MapFile : public ::testing::Test {
     expectThrows<Error>([&] { NdtTarget::load(file); }, parts);
   }
 
-  /// A map as both versions hold it.
-  std::vector<std::string> bothVersionsOf(const WeightedVoxelMap& map) const {
+  /// A map as every version holds it.
+  std::vector<std::string> allVersionsOf(const WeightedVoxelMap& map) const {
     const std::string bytes = bytesOf(map);
-    return {bytes, asVersion1(bytes)};
+    return {bytes, asVersion2(bytes), asVersion1(bytes)};
   }
 
   /// Two points of one voxel, ground and non-ground.
@@ -135,10 +155,11 @@ class MapFile : public ::testing::Test {
 
 TEST_F(MapFile, TinyMapByteForByte) {
   // Voxel (-1, 65, 3) is voxel (63, 1, 3) of tile (-1, 1, 0), whose edge is 64 voxels. Half a voxel is 32768 steps.
-  std::string entries = std::string("\x3F\x01\x03\x01", 4) + littleEndian(std::uint64_t{1});
+  const std::string one_of_one_scan("\1\0\0\0\0\1\0\0", 8);  // 40 bits and 24
+  std::string entries = std::string("\x3F\x01\x03\x01", 4) + one_of_one_scan;
   for (const std::int64_t sum : {0, 16384, -32768}) entries += littleEndian(sum);
   for (const std::int64_t product : {0, 0, 0, 268435456, -536870912, 1073741824}) entries += littleEndian(product);
-  entries += std::string("\x3F\x01\x03\x02", 4) + littleEndian(std::uint64_t{1});
+  entries += std::string("\x3F\x01\x03\x02", 4) + one_of_one_scan;
   for (const std::int64_t sum : {16384, 0, 0}) entries += littleEndian(sum);
   for (const std::int64_t product : {268435456, 0, 0, 0, 0, 0}) entries += littleEndian(product);
   ASSERT_EQ(entries.size(), 2 * kEntryBytes);
@@ -150,7 +171,7 @@ TEST_F(MapFile, TinyMapByteForByte) {
                                 littleEndian(std::uint64_t{0});
   ASSERT_EQ(directory.size(), kTileBytes);
 
-  std::string header = "SAWNDTM\n" + littleEndian(std::uint32_t{2}) + littleEndian(std::uint32_t{96}) +
+  std::string header = "SAWNDTM\n" + littleEndian(std::uint32_t{3}) + littleEndian(std::uint32_t{96}) +
                        std::string("\0\0\0\0\0\0\xF0\x3F", 8) +  // 1.0 as IEEE 754
                        littleEndian(std::uint32_t{64}) + littleEndian(std::uint32_t{1});
   for (const std::uint64_t count : {1, 2, 2, 1}) header += littleEndian(count);  // scans, points, entries, tiles
@@ -185,6 +206,7 @@ TEST_F(MapFile, RoundTripKeepsEverything) {
       ASSERT_EQ(loaded.entries()[i].voxel, map.entries()[i].voxel);
       ASSERT_EQ(loaded.entries()[i].label, map.entries()[i].label);
       ASSERT_EQ(loaded.entries()[i].sums, map.entries()[i].sums);
+      ASSERT_EQ(loaded.entries()[i].scan_count, map.entries()[i].scan_count);
     }
     EXPECT_TRUE(bytesOf(loaded) == contentOf(path()));
   }
@@ -220,6 +242,28 @@ TEST_F(MapFile, OfVersion1IsReadAndDoesNotTellHowItWasMade) {
   expectEqualTargets(NdtTarget::load(file), NdtTarget(map));
 }
 
+TEST_F(MapFile, OfVersion2IsReadAndDoesNotTellScans) {
+  WeightedMapBuilder builder(1.0);
+  for (unsigned seed = 0; seed < 3; ++seed) addCloud(builder, mixedCloud(seed, 5000), Eigen::Isometry3d::Identity());
+  const WeightedVoxelMap map = builder.build();
+  const WeightedVoxelMap loaded = WeightedVoxelMap::load(folder.write("old.map", asVersion2(bytesOf(map))).string());
+  EXPECT_EQ(loaded.origin().software_version, SAW_NDT_VERSION);
+  ASSERT_EQ(loaded.entries().size(), map.entries().size());
+  for (std::size_t i = 0; i < map.entries().size(); ++i) {
+    EXPECT_GT(map.entries()[i].scan_count, 0U);
+    EXPECT_EQ(loaded.entries()[i].scan_count, 0U);
+    EXPECT_EQ(loaded.entries()[i].sums, map.entries()[i].sums);
+  }
+}
+
+TEST_F(MapFile, RefusesMoreScansOfAVoxelThanOfTheMap) {
+  std::string damaged = bytesOf(tinyMap());
+  const std::size_t first_entry = damaged.size() - 2 * kEntryBytes;
+  damaged[first_entry + 9] = 2;
+  checksum(damaged);
+  expectRefused(damaged, {"offset " + std::to_string(first_entry), "out of range"});
+}
+
 TEST_F(MapFile, RefusesDamagedMetadata) {
   const std::string whole = bytesOf(tinyMap());
   const auto expectRefusedWith = [&](const std::string& from, const std::string& to, std::size_t offset,
@@ -251,7 +295,7 @@ TEST_F(MapFile, AnEmptyMapIsAMap) {
 }
 
 TEST_F(MapFile, RefusesEveryTruncation) {
-  for (const std::string& whole : bothVersionsOf(mapOf(mixedCloud(1, 60)))) {
+  for (const std::string& whole : allVersionsOf(mapOf(mixedCloud(1, 60)))) {
     for (std::size_t size = 0; size < whole.size(); size += size < 300 ? 1 : 37) {
       expectRefused(whole.substr(0, size), {"offset "});
     }
@@ -261,7 +305,7 @@ TEST_F(MapFile, RefusesEveryTruncation) {
 }
 
 TEST_F(MapFile, RefusesEveryDamagedByte) {
-  for (const std::string& whole : bothVersionsOf(tinyMap())) {
+  for (const std::string& whole : allVersionsOf(tinyMap())) {
     for (std::size_t i = 0; i < whole.size(); ++i) {
       for (const char flip : {'\x01', '\x80', '\xFF'}) {
         std::string damaged = whole;
@@ -279,9 +323,9 @@ TEST_F(MapFile, RefusesForeignFiles) {
   expectRefused(std::string(1000, '\0'), {"offset 0", "not a saw_ndt map"});
   expectRefused("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\n", {"offset 0", "not a saw_ndt map"});
   std::string newer = bytesOf(tinyMap());
-  put(newer, 8, std::uint32_t{3});
+  put(newer, 8, std::uint32_t{4});
   checksum(newer);
-  expectRefused(newer, {"offset 8", "map version 3, this program reads versions 1 and 2"});
+  expectRefused(newer, {"offset 8", "map version 4, this program reads versions 1 to 3"});
   expectThrows<Error>([&] { WeightedVoxelMap::load(path("none.map")); }, {path("none.map"), "No such file"});
   expectThrows<Error>([&] { WeightedVoxelMap::load(folder.path().string()); }, {folder.path().string(), "folder"});
 }
@@ -313,7 +357,7 @@ TEST_F(MapFile, RefusesAbsurdSizesBeforeAllocating) {
       {172, kHuge >> 1, "out of range"},
       {140, kHuge, "out of range"},
   };
-  for (const std::string& whole : bothVersionsOf(tinyMap())) {
+  for (const std::string& whole : allVersionsOf(tinyMap())) {
     const std::size_t metadata = directoryOf(whole) - kHeaderBytes;
     for (const auto& c : cases) {
       std::string damaged = whole;
@@ -326,7 +370,7 @@ TEST_F(MapFile, RefusesAbsurdSizesBeforeAllocating) {
 }
 
 TEST_F(MapFile, RefusesAnotherLayout) {
-  const std::vector<std::string> versions = bothVersionsOf(tinyMap());
+  const std::vector<std::string> versions = allVersionsOf(tinyMap());
   const auto expectRefusedWith = [&](std::size_t offset, auto value, const std::string& reason) {
     for (std::string damaged : versions) {
       put(damaged, offset < kHeaderBytes ? offset : offset + directoryOf(damaged) - kHeaderBytes, value);
@@ -358,7 +402,7 @@ TEST_F(MapFile, RefusesTilesOutOfOrder) {
   }
   MapOrigin origin;
   origin.point_count = 2;
-  for (std::string bytes : bothVersionsOf(WeightedVoxelMap(origin, entries))) {
+  for (std::string bytes : allVersionsOf(WeightedVoxelMap(origin, entries))) {
     const std::size_t directory = directoryOf(bytes);
     for (const std::int32_t x : {1, 2}) {  // of the first tile; that of the second one is 1
       put(bytes, directory, x);

@@ -92,6 +92,34 @@ TEST(WeightedMapBuilder, AnyNumberOfThreadsGivesTheSameBytes) {
   }
 }
 
+TEST(WeightedMapBuilder, CountsTheScansThatMetAVoxelWithALabel) {
+  // Scan k has points in the voxels 0 to k along x, more of them than one thread takes, the even scans ground.
+  constexpr int kScans = 5;
+  std::vector<pcl::PointCloud<pcl::PointXYZL>> clouds(kScans);
+  for (int scan = 0; scan < kScans; ++scan) {
+    for (int i = 0; i < 50000; ++i) {
+      pcl::PointXYZL point;
+      point.getVector3fMap() << 0.5F + static_cast<float>(i % (scan + 1)), 0.5F, 0.5F;
+      point.label = scan % 2 == 0 ? 1U : 2U;
+      clouds[static_cast<std::size_t>(scan)].push_back(point);
+    }
+  }
+  const auto identity = Eigen::Isometry3d::Identity();
+  for (const int threads : {1, 2, 4}) {
+    WeightedMapBuilder first(1.0), second(1.0);
+    for (const auto& cloud : clouds) addCloud(&cloud < &clouds[3] ? first : second, cloud, identity, threads);
+    first.merge(second);
+    const WeightedVoxelMap map = first.build();
+    for (const LabelledVoxelSums& entry : map.entries()) {
+      std::uint32_t expected = 0;
+      for (int scan = entry.voxel.x(); scan < kScans; ++scan) {
+        expected += (scan % 2 == 0) == (entry.label == StructuralLabel::GROUND) ? 1U : 0U;
+      }
+      EXPECT_EQ(entry.scan_count, expected) << entry.voxel.x() << ' ' << threads;
+    }
+  }
+}
+
 TEST(WeightedMapBuilder, CountsWhatItWasGiven) {
   LabelledCloud cloud = mixedCloud(1, 100);
   cloud[3].x = std::numeric_limits<float>::quiet_NaN();

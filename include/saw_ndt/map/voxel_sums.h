@@ -74,6 +74,7 @@ struct LabelledVoxelSums {
   VoxelCoordinate voxel;
   StructuralLabel label = StructuralLabel::NON_GROUND;
   VoxelSums sums;
+  std::uint32_t scan_count = 0;  ///< scans that these points come from; 0: not known, as in older map files
 };
 
 }  // namespace saw_ndt
