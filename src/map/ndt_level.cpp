@@ -69,20 +69,20 @@ NdtLevel::NdtLevel(double resolution_m, NdtCells cells)
   index_ = VoxelIndex(cells.voxels);
 }
 
-NdtLevel NdtLevel::fromSums(const std::vector<LabelledVoxelSums>& entries, double resolution_m,
+NdtLevel NdtLevel::fromSums(const std::vector<LabelledVoxelSums>& entries, const LevelPlan& plan,
                             const VoxelWeighting& weighting, double metres_per_step, CellPrecision precision,
                             int threads) {
   std::vector<NdtCells> parts;
   forEachPartOfVoxels(
       entries, threads, [&parts](std::size_t part_count) { parts.resize(part_count); },
       [&](std::size_t part, const LabelledVoxelSums* first, const LabelledVoxelSums* last) {
-        forEachStatistics(first, last, weighting, metres_per_step, [&](const std::vector<VoxelStatistics>& statistics) {
-          parts[part].add(statistics, precision);
-        });
+        forEachStatistics(
+            first, last, weighting, plan, metres_per_step,
+            [&](const std::vector<VoxelStatistics>& statistics) { parts[part].add(statistics, precision); });
       });
   NdtCells whole;
   for (NdtCells& part : parts) whole.append(std::exchange(part, {}));
-  return NdtLevel(resolution_m, std::move(whole));
+  return NdtLevel(plan.resolution_m, std::move(whole));
 }
 
 std::int32_t NdtLevel::find(const Eigen::Vector3d& position_m) const {

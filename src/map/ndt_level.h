@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "map/level_plan.h"
 #include "map/voxel_index.h"
 #include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/map/voxel_statistics.h"
@@ -55,8 +56,10 @@ class NdtLevel {
   /// @param cells  in map order (see map_tile.h)
   NdtLevel(double resolution_m, NdtCells cells);
 
-  /// The level of entries in map order. @param threads  0: all cores; the level does not depend on it
-  static NdtLevel fromSums(const std::vector<LabelledVoxelSums>& entries, double resolution_m,
+  /// The level of entries in map order, which are of its own voxels.
+  /// @param metres_per_step  size of the step in which the sums count
+  /// @param threads          0: all cores; the level does not depend on it
+  static NdtLevel fromSums(const std::vector<LabelledVoxelSums>& entries, const LevelPlan& plan,
                            const VoxelWeighting& weighting, double metres_per_step, CellPrecision precision,
                            int threads);
 

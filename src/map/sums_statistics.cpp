@@ -30,6 +30,7 @@ class LabelMerger {
         const auto label = static_cast<std::size_t>(first->label);
         if (!(confidence_[label] > 0.0)) continue;
         voxel.sums += first->sums;
+        voxel.scan_count = std::max(voxel.scan_count, first->scan_count);
         counts[label] = first->sums.count;
       }
       if (voxel.sums.count == 0) continue;
@@ -38,6 +39,8 @@ class LabelMerger {
         confidence_sum += confidence_[label] * static_cast<double>(counts[label]);
       }
       voxel.mean_confidence = confidence_sum / static_cast<double>(voxel.sums.count);
+      voxel.ground_share = static_cast<double>(counts[static_cast<std::size_t>(StructuralLabel::GROUND)]) /
+                           static_cast<double>(voxel.sums.count);
       voxels.push_back(voxel);
     }
   }
@@ -49,14 +52,15 @@ class LabelMerger {
 }  // namespace
 
 void forEachStatistics(const LabelledVoxelSums* first, const LabelledVoxelSums* last, const VoxelWeighting& weighting,
-                       double metres_per_step, const std::function<void(const std::vector<VoxelStatistics>&)>& visit) {
+                       const LevelPlan& level, double metres_per_step,
+                       const std::function<void(const std::vector<VoxelStatistics>&)>& visit) {
   const LabelMerger merger(weighting.confidence);
   std::vector<MergedVoxel> voxels;
   std::vector<VoxelStatistics> statistics;
   while (first != last) {
     merger.take(first, last, voxels);
     statistics.clear();
-    appendVoxelStatistics(voxels.data(), voxels.size(), weighting, metres_per_step, statistics);
+    appendVoxelStatistics(voxels.data(), voxels.size(), weighting, level, metres_per_step, statistics);
     visit(statistics);
   }
 }

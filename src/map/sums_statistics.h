@@ -4,16 +4,18 @@
 #include <functional>
 #include <vector>
 
+#include "map/level_plan.h"
 #include "saw_ndt/map/voxel_statistics.h"
 
 namespace saw_ndt::internal {
 
-/// Makes the distributions of voxels from entries, which hold the entries of a voxel one after the other, and calls
-/// visit() with a batch of them at a time, in their order. Entries whose label has confidence 0 take no part. What
-/// comes of a voxel does not depend on the others.
+/// Makes the distributions of the voxels of a level from entries, which hold the entries of a voxel one after the
+/// other, and calls visit() with a batch of them at a time, in their order. Entries whose label has confidence 0 take
+/// no part. What comes of a voxel does not depend on the others.
 /// @param metres_per_step  size of the step in which the sums count
 void forEachStatistics(const LabelledVoxelSums* first, const LabelledVoxelSums* last, const VoxelWeighting& weighting,
-                       double metres_per_step, const std::function<void(const std::vector<VoxelStatistics>&)>& visit);
+                       const LevelPlan& level, double metres_per_step,
+                       const std::function<void(const std::vector<VoxelStatistics>&)>& visit);
 
 /// Cuts entries into parts of whole voxels and calls process(part, first, last) for each, by several threads. `prepare`
 /// is called first with the number of parts.

@@ -1,6 +1,7 @@
 #include "saw_ndt/map/voxel_statistics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "map/merged_voxel.h"
@@ -54,15 +55,27 @@ Eigen::Matrix3d composed(const SymmetricMatrices& matrices, std::size_t place, c
   return matrix;
 }
 
+// A voxel is flat where its least eigenvalue is less than this share of the second.
+constexpr double kFlat = 0.1;
+// What the other two eigenvalues of unbounded ground are multiplied by: to ten voxels and more across.
+constexpr double kUnbounded = 100.0;
+
 // Raises the eigenvalues of matrix `place` and completes what is known of the voxel so far; false where all of its
-// points coincide.
+// points coincide or spread too little.
 bool complete(const SymmetricMatrices& matrices, std::size_t place, const VoxelWeighting& weighting,
-              VoxelStatistics& statistics) {
+              double min_spread_m, bool unbounded, VoxelStatistics& statistics) {
   const Eigen::Vector3d eigenvalues(matrices.eigenvalue[0][place], matrices.eigenvalue[1][place],
                                     matrices.eigenvalue[2][place]);
   const double greatest = eigenvalues.maxCoeff();
   if (!(greatest > 0.0)) return false;
-  const Eigen::Vector3d raised = eigenvalues.cwiseMax(weighting.min_eigenvalue_ratio * greatest);
+  Eigen::Vector3d sorted = eigenvalues;
+  std::sort(sorted.data(), sorted.data() + 3);
+  const double second = sorted[1];
+  if (second < min_spread_m * min_spread_m) return false;
+  Eigen::Vector3d raised = eigenvalues.cwiseMax(weighting.min_eigenvalue_ratio * greatest);
+  if (unbounded && eigenvalues.minCoeff() < kFlat * second) {
+    for (double& value : raised) value *= value > kFlat * second ? kUnbounded : 1.0;
+  }
   statistics.covariance = composed(matrices, place, raised);
   statistics.inverse_covariance = composed(matrices, place, raised.cwiseInverse());
   statistics.structure_class = structureClass(eigenvalues);
@@ -83,25 +96,28 @@ StructureClass structureClass(const Eigen::Vector3d& eigenvalues) {
 }
 
 void internal::appendVoxelStatistics(const MergedVoxel* voxels, std::size_t count, const VoxelWeighting& weighting,
-                                     double metres_per_step, std::vector<VoxelStatistics>& statistics) {
+                                     const LevelPlan& level, double metres_per_step,
+                                     std::vector<VoxelStatistics>& statistics) {
   const auto least_count = static_cast<std::uint64_t>(weighting.min_points_per_voxel);
   SymmetricMatrices matrices;
+  std::array<bool, SymmetricMatrices::kMost> unbounded;
   for (std::size_t next = 0; next < count;) {
     const std::size_t first = statistics.size();
     std::size_t matrix_count = 0;
     for (; next < count && matrix_count < SymmetricMatrices::kMost; ++next) {
       const MergedVoxel& voxel = voxels[next];
-      if (voxel.sums.count < least_count) continue;
+      if (voxel.sums.count < least_count || (voxel.scan_count != 0 && voxel.scan_count < level.min_scans)) continue;
       VoxelStatistics& known = statistics.emplace_back();
       known.voxel = voxel.voxel;
       known.point_count = voxel.sums.count;
+      unbounded[matrix_count] = level.unbounded_ground && voxel.ground_share > 0.5;
       known.mean_from_centre = meanAndCovariance(voxel.sums, metres_per_step, matrices, matrix_count++);
       known.mean_confidence = voxel.mean_confidence;
     }
     findEigenvectors(matrices, matrix_count);
     std::size_t kept = first;
     for (std::size_t i = 0; i < matrix_count; ++i) {
-      if (!complete(matrices, i, weighting, statistics[first + i])) continue;
+      if (!complete(matrices, i, weighting, level.min_spread_m, unbounded[i], statistics[first + i])) continue;
       if (kept != first + i) statistics[kept] = statistics[first + i];
       ++kept;
     }
@@ -112,9 +128,9 @@ void internal::appendVoxelStatistics(const MergedVoxel* voxels, std::size_t coun
 std::optional<VoxelStatistics> voxelStatistics(const VoxelCoordinate& voxel, const VoxelSums& sums,
                                                double mean_confidence, const VoxelWeighting& weighting,
                                                double metres_per_step) {
-  const MergedVoxel merged{voxel, sums, mean_confidence};
+  const MergedVoxel merged{voxel, sums, mean_confidence, 0.0, 0};
   std::vector<VoxelStatistics> statistics;
-  appendVoxelStatistics(&merged, 1, weighting, metres_per_step, statistics);
+  appendVoxelStatistics(&merged, 1, weighting, {}, metres_per_step, statistics);
   if (statistics.empty()) return std::nullopt;
   return statistics.front();
 }

@@ -13,8 +13,17 @@ void ConfidenceOptions::check() const {
   checkOption(in_unit_interval(non_ground), "confidence.non_ground", non_ground, "between 0 and 1");
 }
 
+void VoxelSizes::check() const {
+  const auto not_negative = [](double value) { return value >= 0.0 && std::isfinite(value); };
+  checkOption(not_negative(finest_m), "sizes.finest_m", finest_m, "0 or more");
+  checkOption(not_negative(coarsest_m), "sizes.coarsest_m", coarsest_m, "0 or more");
+  checkOption(min_scans >= 0, "sizes.min_scans", min_scans, "0 or more");
+  checkOption(min_spread >= 0.0 && min_spread < 0.5, "sizes.min_spread", min_spread, "0 or more and below 0.5");
+}
+
 void VoxelWeighting::check() const {
   confidence.check();
+  sizes.check();
   const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
   checkOption(positive(linear_alpha), "linear_alpha", linear_alpha, "positive");
   checkOption(positive(planar_alpha), "planar_alpha", planar_alpha, "positive");

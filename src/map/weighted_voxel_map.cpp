@@ -46,7 +46,7 @@ std::vector<VoxelStatistics> WeightedVoxelMap::statistics(const VoxelWeighting& 
   internal::forEachPartOfVoxels(
       entries_, threads, [&parts](std::size_t part_count) { parts.resize(part_count); },
       [&](std::size_t part, const LabelledVoxelSums* first, const LabelledVoxelSums* last) {
-        internal::forEachStatistics(first, last, weighting, metresPerStep(origin_),
+        internal::forEachStatistics(first, last, weighting, {}, metresPerStep(origin_),
                                     [&](const std::vector<VoxelStatistics>& batch) {
                                       parts[part].insert(parts[part].end(), batch.begin(), batch.end());
                                     });
@@ -64,7 +64,7 @@ std::size_t WeightedVoxelMap::voxelCount(const VoxelWeighting& weighting, int th
   internal::forEachPartOfVoxels(
       entries_, threads, [&parts](std::size_t part_count) { parts.resize(part_count); },
       [&](std::size_t part, const LabelledVoxelSums* first, const LabelledVoxelSums* last) {
-        internal::forEachStatistics(first, last, weighting, metresPerStep(origin_),
+        internal::forEachStatistics(first, last, weighting, {}, metresPerStep(origin_),
                                     [&](const std::vector<VoxelStatistics>& batch) { parts[part] += batch.size(); });
       });
   return std::accumulate(parts.begin(), parts.end(), std::size_t{0});
@@ -75,14 +75,14 @@ std::optional<VoxelStatistics> WeightedVoxelMap::find(const Eigen::Vector3d& pos
   weighting.check();
   QuantizedPosition position;
   if (!quantize(position_m, 1.0 / resolution(), position)) return std::nullopt;
-  const LabelledVoxelSums least{position.voxel, StructuralLabel::NOISE, {}};
+  const LabelledVoxelSums least{position.voxel, StructuralLabel::NOISE, {}, 0};
   static_assert(static_cast<int>(StructuralLabel::NOISE) == 0, "the first label of a voxel");
   const auto first = std::lower_bound(entries_.begin(), entries_.end(), least, internal::inMapOrder);
   const auto last = std::find_if(first, entries_.end(),
                                  [&](const LabelledVoxelSums& entry) { return entry.voxel != position.voxel; });
   std::optional<VoxelStatistics> found;
   const LabelledVoxelSums* const begin = entries_.data() + (first - entries_.begin());
-  internal::forEachStatistics(begin, begin + (last - first), weighting, metresPerStep(origin_),
+  internal::forEachStatistics(begin, begin + (last - first), weighting, {}, metresPerStep(origin_),
                               [&found](const std::vector<VoxelStatistics>& batch) {
                                 if (!batch.empty()) found = batch.front();
                               });

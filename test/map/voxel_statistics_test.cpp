@@ -233,6 +233,10 @@ TEST(VoxelWeighting, NamesTheFieldThatDoesNotHold) {
   expectRefused([](VoxelWeighting& w) { w.volumetric_alpha = 1.0 / 0.0; }, "volumetric_alpha = inf");
   expectRefused([](VoxelWeighting& w) { w.min_points_per_voxel = 2; }, "min_points_per_voxel = 2");
   expectRefused([](VoxelWeighting& w) { w.min_eigenvalue_ratio = 0.0; }, "min_eigenvalue_ratio = 0");
+  expectRefused([](VoxelWeighting& w) { w.sizes.finest_m = -0.5; }, "sizes.finest_m = -0.5");
+  expectRefused([](VoxelWeighting& w) { w.sizes.coarsest_m = std::nan(""); }, "sizes.coarsest_m");
+  expectRefused([](VoxelWeighting& w) { w.sizes.min_scans = -1; }, "sizes.min_scans = -1");
+  expectRefused([](VoxelWeighting& w) { w.sizes.min_spread = 0.5; }, "sizes.min_spread = 0.5");
   expectRefused([](VoxelWeighting& w) { w.coarse_factor = 0; }, "coarse_factor = 0");
 }
 

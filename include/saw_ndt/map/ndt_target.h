@@ -23,9 +23,10 @@ enum class CellPrecision {
 };
 
 /// What scans are registered to: the weighted NDT map of the paper (Section III.B). For every voxel it has mean,
-/// inverse covariance, mean confidence and weight, on a fine level and on a coarser one whose voxels add up the fine
-/// ones. Derived once from the sums of a map with one weighting, and then apart from them. A value: immutable, cheap to
-/// copy since copies share the levels, and safe to read from many threads.
+/// inverse covariance, mean confidence and weight, on one level or, where VoxelWeighting::sizes asks for several sizes
+/// of voxels, on a level of each, and on a coarse one to start on; larger voxels add up the sums of smaller ones.
+/// Derived once from the sums of a map with one weighting, and then apart from them. A value: immutable, cheap to copy
+/// since copies share the levels, and safe to read from many threads.
 class SAW_NDT_EXPORT NdtTarget {
  public:
   /// A target without voxels.
@@ -35,30 +36,33 @@ class SAW_NDT_EXPORT NdtTarget {
   explicit NdtTarget(const WeightedVoxelMap& map, const VoxelWeighting& weighting = {}, int threads = 0,
                      CellPrecision precision = CellPrecision::SINGLE);
 
-  /// The target of a map file, as of the map read from it, without ever having all of its sums in memory.
+  /// The target of a map file, as of the map read from it, without ever having the sums of all of its voxels in memory,
+  /// only those of larger ones.
   /// @throws Error as WeightedVoxelMap::load(), std::invalid_argument where the weighting does not hold
   static NdtTarget load(const std::string& path, const VoxelWeighting& weighting = {}, int threads = 0);
 
   const MapOrigin& origin() const;
-  /// Edge of a fine voxel (m).
-  double resolution() const { return origin().resolution_m; }
+  /// Edge of its smallest voxels (m).
+  double resolution() const;
   /// Whether the points carried labels; without them there are no weights, and matching is classical NDT.
   bool labelled() const { return origin().labelled; }
   const VoxelWeighting& weighting() const;
 
-  /// How many fine voxels have a distribution.
+  /// How many voxels have a distribution, on all levels but a coarse one that serves the start alone.
   std::size_t voxelCount() const;
-  /// How many voxels of coarse_factor times the edge have one; 0 where coarse_factor is 1.
+  /// How many voxels the coarse level has; 0 where there is none.
   std::size_t coarseVoxelCount() const;
   /// Whether there is nothing to match against.
   bool empty() const { return voxelCount() == 0; }
-  /// The means of the fine voxels in the map frame (m), tile after tile, exact to about 1e-7 of a voxel.
+  /// The means of those voxels in the map frame (m), level by level and tile after tile, exact to about 1e-7 of a
+  /// voxel.
   std::vector<Eigen::Vector3d> means() const;
   /// Whether two targets are copies of one.
   bool sharesLevelsWith(const NdtTarget& other) const { return levels_ == other.levels_; }
 
   /// For this project's own code.
-  const internal::NdtLevel& fine() const;
+  const std::vector<internal::NdtLevel>& levels() const;  ///< those that match, the finest first
+  const internal::NdtLevel& fine() const;                 ///< the finest
   const internal::NdtLevel& coarse() const;
 
  private:

@@ -34,6 +34,24 @@ struct SAW_NDT_EXPORT ConfidenceOptions {
   void check() const;
 };
 
+/// How large the voxels of a target are. Where `coarsest_m` is not greater than `finest_m`, all are of one size.
+/// Otherwise every place has the smallest voxels, each level twice as large as the one before, that its points bear:
+/// those of a level before the last are left to the next one unless they meet `min_scans` and `min_spread`.
+struct SAW_NDT_EXPORT VoxelSizes {
+  double finest_m = 0.0;    ///< edge of the smallest (m), rounded to whole voxels of the map; 0: those of the map
+  double coarsest_m = 0.0;  ///< edge that none exceeds (m), but for a map whose voxels do
+  int min_scans = 2;        ///< scans that met the voxel, at least: one alone may be off, and draws its rings as lines
+  double min_spread = 0.2;  ///< least standard deviation of the points along the second principal axis, in edges;
+                            ///< points that cover a face have 0.29, a line has none
+
+  bool operator==(const VoxelSizes& other) const {
+    return finest_m == other.finest_m && coarsest_m == other.coarsest_m && min_scans == other.min_scans &&
+           min_spread == other.min_spread;
+  }
+  /// Throws std::invalid_argument that names the field and its value.
+  void check() const;
+};
+
 /// How the points of a voxel become its distribution and its weight w_target = mean confidence * alpha(class).
 struct SAW_NDT_EXPORT VoxelWeighting {
   ConfidenceOptions confidence;
@@ -43,12 +61,17 @@ struct SAW_NDT_EXPORT VoxelWeighting {
   int min_points_per_voxel = 6;        ///< voxels with fewer points have no distribution; at least 3
   double min_eigenvalue_ratio = 0.01;  ///< smaller eigenvalues are raised to this share of the largest, in (0, 1];
                                        ///< 0.01 is PCL's
-  int coarse_factor = 3;               ///< edge of a coarse voxel, in voxels: 2 or more; 1 for no coarse level
+  /// Whether flat voxels of ground are taken to reach on without end, so that they hold a pose along their normal
+  /// alone. Where the points of ground lie within a voxel says where the rings fell, not where the ground is.
+  bool unbounded_ground = false;
+  VoxelSizes sizes;       ///< by default those of the map
+  int coarse_factor = 3;  ///< edge of a coarse voxel, in the smallest ones: 2 or more; 1: no coarse level
 
   bool operator==(const VoxelWeighting& other) const {
     return confidence == other.confidence && linear_alpha == other.linear_alpha && planar_alpha == other.planar_alpha &&
            volumetric_alpha == other.volumetric_alpha && min_points_per_voxel == other.min_points_per_voxel &&
-           min_eigenvalue_ratio == other.min_eigenvalue_ratio && coarse_factor == other.coarse_factor;
+           min_eigenvalue_ratio == other.min_eigenvalue_ratio && unbounded_ground == other.unbounded_ground &&
+           sizes == other.sizes && coarse_factor == other.coarse_factor;
   }
   double alpha(StructureClass structure_class) const {
     return structure_class == StructureClass::LINEAR   ? linear_alpha

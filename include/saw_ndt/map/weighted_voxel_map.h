@@ -45,7 +45,8 @@ class SAW_NDT_EXPORT WeightedVoxelMap {
   /// The exact sums in map order: by tile of 64^3 voxels, then voxel, each by z, y and x, then label.
   const std::vector<LabelledVoxelSums>& entries() const { return entries_; }
 
-  /// The statistics of every voxel that has a distribution, in map order.
+  /// The statistics of every voxel of the map that has a distribution, in map order. Here and below the sizes of voxels
+  /// that a weighting asks for are those of targets: the map's own are told.
   /// @param threads  0: all cores; the result does not depend on it
   /// @throws std::invalid_argument where the weighting does not hold
   std::vector<VoxelStatistics> statistics(const VoxelWeighting& weighting = {}, int threads = 0) const;
