@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   app.addOption("map-scans", &options.map_scans, "SLICE", "scans of the maps, first:last:step as in Python");
   app.addOption("scans", &options.scans, "SLICE", "scans to localize");
   app.addOption("skip", &options.skip_s, "SECONDS", "time at the start that the errors leave out; 0 for short drives");
-  app.addOption("resolution", &options.resolution_m, "METRES", "edge of a voxel");
+  app.addOption("resolution", &options.resolution_m, "METRES", "edge of the voxels of the maps");
   app.addFlag("paper", &with_paper, "add the paper's Table I beside sequences named 00, 01 and 03");
   segmentation.addTo(app);
 

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   saw_ndt::AppOptions app("saw_ndt_build_map", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt");
   app.addPositional("MAP", &map_file, "map file to write");
-  app.addOption("resolution", &options.resolution_m, "METRES", "edge of a voxel");
+  app.addOption("resolution", &options.resolution_m, "METRES", "edge of the smallest voxels that methods can match");
   app.addOption("scans", &scans, "SLICE", "scans to use, first:last:step as in Python: `0:70:2`, or all with `:`");
   app.addOption("poses", &poses_file, "FILE",
                 "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");

@@ -128,11 +128,12 @@ void level(benchmark::State& state, int factor, int threads) {
   std::size_t voxels = 0;
   for (auto _ : state) {
     if (factor == 1) {
-      voxels = internal::NdtLevel::fromSums(entries, resolution_m, {}, step_m, CellPrecision::SINGLE, threads).size();
+      voxels =
+          internal::NdtLevel::fromSums(entries, {1, resolution_m}, {}, step_m, CellPrecision::SINGLE, threads).size();
     } else {
       internal::CoarseSums sums(factor);
       sums.add(entries.data(), entries.data() + entries.size());
-      voxels = internal::NdtLevel::fromSums(sums.takeInMapOrder(), factor * resolution_m, {}, step_m,
+      voxels = internal::NdtLevel::fromSums(sums.takeInMapOrder(), {factor, factor * resolution_m}, {}, step_m,
                                             CellPrecision::SINGLE, threads)
                    .size();
     }

@@ -19,7 +19,7 @@ void evaluate(benchmark::State& state, const RegistrationCase& scan, int threads
   options.threads = threads;
   saw_ndt::internal::NdtEvaluation source;
   source.begin(scan.target, scan.source, options);
-  const saw_ndt::internal::Evaluation evaluation = source.onFineLevel();
+  const saw_ndt::internal::Evaluation evaluation = source.onMatchingLevels(saw_ndt::benchmarkPose());
   saw_ndt::internal::NdtDerivatives derivatives;
   const saw_ndt::internal::HelperSession session(threads);  // as an alignment has
   for (auto _ : state) {

@@ -144,7 +144,7 @@ Evaluation measureEvaluation(const saw_ndt::RegistrationCase& scan, int threads)
   options.threads = threads;
   saw_ndt::internal::NdtEvaluation source;
   source.begin(scan.target, scan.source, options);
-  const saw_ndt::internal::Evaluation repeated = source.onFineLevel();
+  const saw_ndt::internal::Evaluation repeated = source.onMatchingLevels(saw_ndt::benchmarkPose());
   Evaluation evaluation;
   evaluation.points = static_cast<double>(scan.source.size());
   const clockid_t clock = threads > 1 ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;

@@ -38,7 +38,7 @@ void evaluate(benchmark::State& state, const saw_ndt::SourcePoints& source, std:
   const saw_ndt::AlignmentOptions options = optionsFor(threads);
   saw_ndt::internal::NdtEvaluation ordered;
   ordered.begin(target, source, options);
-  const saw_ndt::internal::Evaluation evaluation = ordered.onFineLevel();
+  const saw_ndt::internal::Evaluation evaluation = ordered.onMatchingLevels(T_map_source);
   saw_ndt::internal::NdtDerivatives derivatives;
   const saw_ndt::internal::HelperSession session(threads);  // as an alignment has
   for (auto _ : state) {

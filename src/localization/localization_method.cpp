@@ -8,28 +8,35 @@
 namespace saw_ndt {
 namespace {
 
-VoxelWeighting voxelsWith(const ConfidenceOptions& confidence) {
+/// The paper's voxels.
+VoxelWeighting voxelsOfOneMetre(const ConfidenceOptions& confidence) {
   VoxelWeighting voxels;
   voxels.confidence = confidence;
+  voxels.sizes.finest_m = 1.0;
   return voxels;
 }
 
-/// Those of `weighted`: flat surfaces may be as thin as a LiDAR sees them. PCL's floor makes a plane that fills a voxel
-/// of 1 m at least 3 cm thick, and costs a quarter of the accuracy.
-VoxelWeighting thinVoxels() {
+/// Those of `weighted`: as small as a place bears, and flat surfaces as thin as a LiDAR sees them. PCL's floor makes a
+/// plane that fills a voxel of 1 m at least 3 cm thick, and costs a quarter of the accuracy.
+VoxelWeighting adaptiveVoxels() {
   VoxelWeighting voxels;
-  voxels.min_eigenvalue_ratio = 0.002;
+  voxels.confidence.ground = 0.8;
+  voxels.min_eigenvalue_ratio = 0.003;
+  voxels.unbounded_ground = true;
+  voxels.sizes.finest_m = 0.5;
+  voxels.sizes.coarsest_m = 4.0;
+  voxels.coarse_factor = 6;
   return voxels;
 }
 
 const std::vector<LocalizationMethod>& methods() {
-  const VoxelWeighting paper = voxelsWith(ConfidenceOptions::paper());
+  const VoxelWeighting paper = voxelsOfOneMetre(ConfidenceOptions::paper());
   static const std::vector<LocalizationMethod> all = {
-      {"weighted", true, 0.5, true, thinVoxels(), 0.5, 0.35},
-      {"weighted-s50", true, 0.5, true, paper, 0.1, 0.55},
-      {"weighted-s100", true, 1.0, true, paper, 0.1, 0.55},
-      {"unweighted-s50", true, 0.5, false, paper, 0.1, 0.55},
-      {"classical", false, 1.0, false, voxelsWith(ConfidenceOptions::uniform()), 0.1, 0.55},
+      {"weighted", true, 0.5, true, adaptiveVoxels(), 0.5, 0.35, 0.2, true},
+      {"weighted-s50", true, 0.5, true, paper, 0.1, 0.55, 0.02, false},
+      {"weighted-s100", true, 1.0, true, paper, 0.1, 0.55, 0.02, false},
+      {"unweighted-s50", true, 0.5, false, paper, 0.1, 0.55, 0.02, false},
+      {"classical", false, 1.0, false, voxelsOfOneMetre(ConfidenceOptions::uniform()), 0.1, 0.55, 0.02, false},
   };
   return all;
 }
@@ -41,6 +48,7 @@ void LocalizationMethod::check() const {
   checkOption(mismatch_penalty >= 0.0 && mismatch_penalty <= 1.0, "mismatch_penalty", mismatch_penalty,
               "between 0 and 1");
   checkOption(outlier_ratio > 0.0 && outlier_ratio < 1.0, "outlier_ratio", outlier_ratio, "between 0 and 1, exclusive");
+  checkOption(coarse_settled_voxels > 0.0, "coarse_settled_voxels", coarse_settled_voxels, "positive");
   voxels.check();
 }
 

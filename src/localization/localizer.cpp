@@ -35,6 +35,8 @@ LocalizerOptions withMethod(LocalizerOptions options) {
   options.alignment.use_weights = options.method.use_weights;
   options.alignment.mismatch_penalty = options.method.mismatch_penalty;
   options.alignment.outlier_ratio = options.method.outlier_ratio;
+  options.alignment.coarse_settled_voxels = options.method.coarse_settled_voxels;
+  options.alignment.ground_in_own_voxel = options.method.ground_in_own_voxel;
   options.alignment.evaluate_likelihoods = true;
   return options;
 }

@@ -46,12 +46,16 @@ BatchVoxelFinder::BatchVoxelFinder(const internal::NdtLevel& level, Neighborhood
   pose_ = anchored.pose;
 }
 
-void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const {
+void BatchVoxelFinder::place(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const {
   move(source, first, count, scratch);
   if (source.mixedUp(first, scratch.points.run_count)) {
     source.regroup(first, scratch.points);
     move(source, first, count, scratch);
   }
+}
+
+void BatchVoxelFinder::find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const {
+  place(source, first, count, scratch);
   findVoxels(scratch);
   cutIntoUnits(scratch);
 }

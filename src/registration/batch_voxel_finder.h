@@ -30,6 +30,12 @@ class BatchVoxelFinder {
   BatchVoxelFinder(const internal::NdtLevel& level, NeighborhoodSearchMethod method,
                    const Eigen::Isometry3d& T_map_source);
 
+  /// Moves points of the source to the map and finds the voxels that they lie in, counted from origin(), without asking
+  /// which of them exist. Puts the points in a better order first where runs are short.
+  void place(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const;
+  /// The voxel that others are counted from.
+  const VoxelCoordinate& origin() const { return origin_; }
+
   /// Fills the scratch memory from `count` points of the source, at most kPointsPerBatch.
   /// Puts them in a better order first where runs are short.
   void find(OrderedSource& source, std::size_t first, std::size_t count, BatchScratch& scratch) const;

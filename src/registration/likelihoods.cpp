@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/executor.h"
+#include "map/ndt_level.h"
 #include "registration/batch_voxel_finder.h"
 #include "registration/pair_parameters.h"
 
@@ -19,9 +20,13 @@ std::size_t matchedPoints(const BatchScratch& scratch) {
 
 double ratio(double sum, std::size_t count) { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
 
+// The score function of voxels of so many metres, whatever the voxels are: large ones would score more, and how well a
+// pose explains a scan would depend on how the map is divided.
+constexpr double kScoredVoxel_m = 1.0;
+
 PairParameters parametersOf(const NdtLevel& level, double outlier_ratio) {
-  return pairParameters(level, kNeighbours,
-                        scoreParameters(ScoreFunction::MAGNUSSON, outlier_ratio, level.resolution()), {});
+  return pairParameters(level, kNeighbours, scoreParameters(ScoreFunction::MAGNUSSON, outlier_ratio, kScoredVoxel_m),
+                        {});
 }
 
 // Of the batch that begins at point `first`, whose voxels have been found.
@@ -38,16 +43,15 @@ void add(const LikelihoodSums& batch, LikelihoodSums& total) {
   total.matched_points += batch.matched_points;
 }
 
-Likelihoods likelihoodsOf(const LikelihoodSums& total, const OrderedSource& source) {
-  return {ratio(total.scores.all, source.size()), ratio(total.scores.non_ground, source.nonGroundCount()),
+Likelihoods likelihoodsOf(const LikelihoodSums& total, std::size_t points, std::size_t non_ground_points) {
+  return {ratio(total.scores.all, points), ratio(total.scores.non_ground, non_ground_points),
           ratio(total.scores.best, total.matched_points)};
 }
 
-}  // namespace
-
-Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
-                                double outlier_ratio, int threads, BatchWorkspace& workspace) {
-  if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return {};
+LikelihoodSums sumsOf(const NdtLevel& level, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
+                      double outlier_ratio, int threads, BatchWorkspace& workspace) {
+  LikelihoodSums total;
+  if (level.empty() || !VoxelPairs::reachable(level, T_map_source)) return total;
   const PairParameters parameters = parametersOf(level, outlier_ratio);
   const BatchVoxelFinder finder(level, kNeighbours, T_map_source);
   workspace.prepare(threads);
@@ -58,9 +62,26 @@ Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, co
     finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
     workspace.batch_likelihoods[batch] = sumsOfBatch(source, first, scratch, parameters);
   });
-  LikelihoodSums total;
   for (const LikelihoodSums& batch : workspace.batch_likelihoods) add(batch, total);
-  return likelihoodsOf(total, source);
+  return total;
+}
+
+}  // namespace
+
+Likelihoods evaluateLikelihoods(const NdtTarget& target, LevelledSource& source, const Eigen::Isometry3d& T_map_source,
+                                double outlier_ratio, int threads, BatchWorkspace& workspace) {
+  LikelihoodSums total;
+  for (std::size_t i = 0; i < source.parts().size(); ++i) {
+    const NdtLevel& level = target.levels()[source.levelOf(i)];
+    add(sumsOf(level, source.parts()[i], T_map_source, outlier_ratio, threads, workspace), total);
+  }
+  return likelihoodsOf(total, source.size(), source.nonGroundCount());
+}
+
+Likelihoods evaluateLikelihoods(const NdtLevel& level, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
+                                double outlier_ratio, int threads, BatchWorkspace& workspace) {
+  return likelihoodsOf(sumsOf(level, source, T_map_source, outlier_ratio, threads, workspace), source.size(),
+                       source.nonGroundCount());
 }
 
 Likelihoods likelihoodsInOrder(const NdtLevel& level, const OrderedSource& source,
@@ -73,7 +94,7 @@ Likelihoods likelihoodsInOrder(const NdtLevel& level, const OrderedSource& sourc
     finder.findInOrder(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
     add(sumsOfBatch(source, first, scratch, parameters), total);
   }
-  return likelihoodsOf(total, source);
+  return likelihoodsOf(total, source.size(), source.nonGroundCount());
 }
 
 Likelihoods evaluateLikelihoods(const NdtLevel& level, const SourcePoints& source,

@@ -11,6 +11,29 @@ namespace saw_ndt {
 
 using namespace internal;
 
+namespace {
+
+StepLimits limitsOf(const NdtTarget& target, const AlignmentOptions& options) {
+  return {options.max_iterations, options.translation_epsilon_m, options.rotation_epsilon_rad,
+          options.max_step_m * target.resolution()};
+}
+
+void alignCoarsely(const NdtTarget& target, const AlignmentOptions& options, NdtEvaluation& evaluation,
+                   AlignmentResult& result) {
+  const Eigen::Isometry3d guess = result.T_map_source;
+  StepLimits limits = limitsOf(target, options);
+  limits.max_iterations = options.coarse_max_iterations;
+  limits.translation_epsilon_m = options.coarse_settled_voxels * target.resolution();
+  limits.rotation_epsilon_rad = 1.0;
+  limits.max_step_m = options.max_step_m * target.coarse().resolution();
+  dampedNewton(evaluation.onCoarseLevel(), limits, options.min_curvature_share, result);
+  // A first step that is already small says that the guess is good; the coarse optimum is no better than it.
+  if (result.evaluations == 1) result.T_map_source = guess;
+  result.iterations = 0;
+}
+
+}  // namespace
+
 struct NdtAligner::Scratch {
   NdtEvaluation evaluation;
 };
@@ -32,26 +55,16 @@ AlignmentResult NdtAligner::align(const NdtTarget& target, const SourcePoints& s
   const internal::HelperSession session(options.threads);
   NdtEvaluation& evaluation = scratch_->evaluation;
   evaluation.begin(target, source, options);
-  const double resolution_m = target.resolution();
-  StepLimits limits{options.max_iterations, options.translation_epsilon_m, options.rotation_epsilon_rad,
-                    options.max_step_m * resolution_m};
-  if (options.optimizer == Optimizer::DAMPED_NEWTON && options.use_coarse_level && !target.coarse().empty()) {
-    StepLimits coarse_limits = limits;
-    coarse_limits.max_iterations = options.coarse_max_iterations;
-    coarse_limits.translation_epsilon_m = options.coarse_settled_voxels * resolution_m;
-    coarse_limits.rotation_epsilon_rad = 1.0;
-    coarse_limits.max_step_m = options.max_step_m * target.coarse().resolution();
-    dampedNewton(evaluation.onCoarseLevel(), coarse_limits, options.min_curvature_share, result);
-    // A first step that is already small says that the guess is good; the coarse optimum is no better than it.
-    if (result.evaluations == 1) result.T_map_source = guess;
-    result.iterations = 0;
+  const bool damped_newton = options.optimizer == Optimizer::DAMPED_NEWTON;
+  if (damped_newton && options.use_coarse_level && !target.coarse().empty()) {
+    alignCoarsely(target, options, evaluation, result);
   }
-
-  if (options.optimizer == Optimizer::DAMPED_NEWTON) {
-    dampedNewton(evaluation.onFineLevel(), limits, options.min_curvature_share, result);
+  const StepLimits limits = limitsOf(target, options);
+  const Evaluation on_matching_levels = evaluation.onMatchingLevels(result.T_map_source);
+  if (damped_newton) {
+    dampedNewton(on_matching_levels, limits, options.min_curvature_share, result);
   } else {
-    newtonMoreThuente(evaluation.onFineLevel(), limits, options.line_search_min_step, options.line_search_max_step,
-                      result);
+    newtonMoreThuente(on_matching_levels, limits, options.line_search_min_step, options.line_search_max_step, result);
   }
   result.likelihood = result.score / static_cast<double>(source.size());
   if (options.evaluate_likelihoods) result.likelihoods = evaluation.likelihoods(result.T_map_source);

@@ -5,6 +5,16 @@
 
 namespace saw_ndt::internal {
 
+NdtDerivatives& NdtDerivatives::operator+=(const NdtDerivatives& other) {
+  score += other.score;
+  force += other.force;
+  moment += other.moment;
+  curvature += other.curvature;
+  radial_curvature += other.radial_curvature;
+  pair_count += other.pair_count;
+  return *this;
+}
+
 Vector6d NdtDerivatives::gradient() const {
   Vector6d gradient;
   gradient << force, moment(2, 1) - moment(1, 2), moment(0, 2) - moment(2, 0), moment(1, 0) - moment(0, 1);

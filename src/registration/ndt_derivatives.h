@@ -19,6 +19,9 @@ struct NdtDerivatives {
   Matrix6d radial_curvature = Matrix6d::Zero();      ///< sum of J^T (W d2^2 e C^-1 q q^T C^-1) J: likewise
   std::size_t pair_count = 0;                        ///< source-voxel pairs that were met
 
+  /// Adds those of other pairs.
+  NdtDerivatives& operator+=(const NdtDerivatives& other);
+
   /// Gradient of the score by (v, w).
   Vector6d gradient() const;
   /// Exact second derivative of the score by (v, w).

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "registration/batch_workspace.h"
+#include "registration/levelled_source.h"
 #include "registration/ndt_derivatives.h"
 #include "registration/ndt_objective.h"
-#include "registration/ordered_source.h"
+#include "registration/vectorized_ndt_objective.h"
 #include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/registration/alignment.h"
 #include "saw_ndt/registration/source_points.h"
@@ -21,23 +23,32 @@ class NdtEvaluation {
   /// Takes over what following calls evaluate; all of it must outlive them.
   void begin(const NdtTarget& target, const SourcePoints& source, const AlignmentOptions& options);
 
-  /// Score and derivatives on the fine level, and on the coarse one over every `coarse_stride`-th source point.
-  Evaluation onFineLevel();
+  /// Score and derivatives on the coarse level over every `coarse_stride`-th source point.
   Evaluation onCoarseLevel();
-  /// Likelihoods on the fine level.
+  /// The same over all on the levels that match. Where there are several, a point keeps to the one that it has at a
+  /// pose near which it is evaluated.
+  Evaluation onMatchingLevels(const Eigen::Isometry3d& T_map_source_near);
+  /// Likelihoods on the levels of the last onMatchingLevels().
   Likelihoods likelihoods(const Eigen::Isometry3d& T_map_source);
 
  private:
-  Evaluation on(const internal::NdtLevel& level, std::size_t stride);
   template <typename Objective>
-  Objective objectiveOn(const internal::NdtLevel& level) const;
+  Objective objectiveOn(const internal::NdtLevel& level, bool ground) const;
+  bool inParts() const;
+  Evaluation onLevel(const internal::NdtLevel& level, OrderedSource& points);
+  Evaluation exactly(const internal::NdtLevel& level, std::size_t stride);
+  Evaluation exactlyInParts(const Eigen::Isometry3d& T_map_source_near);
 
   const NdtTarget* target_ = nullptr;
   const SourcePoints* source_ = nullptr;
   const AlignmentOptions* options_ = nullptr;
   OrderedSource ordered_;
   OrderedSource thinned_;
+  LevelledSource levelled_;
+  std::vector<VectorizedNdtObjective> objectives_;  // of the parts of levelled_
+  std::vector<ObjectiveOfPoints> parts_;
   BatchWorkspace batches_;
+  std::vector<SourcePoints> exact_parts_;
   NdtObjective::Workspace workspace_;
 };
 

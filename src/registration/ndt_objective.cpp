@@ -140,14 +140,7 @@ NdtDerivatives NdtObjective::evaluate(const SourcePoints& source, const Eigen::I
     (this->*block)(source, T_map_source, first, std::min(first + block_size, source.size()), stride,
                    workspace.blocks[b]);
   });
-  for (const NdtDerivatives& sums : workspace.blocks) {
-    total.score += sums.score;
-    total.force += sums.force;
-    total.moment += sums.moment;
-    total.curvature += sums.curvature;
-    total.radial_curvature += sums.radial_curvature;
-    total.pair_count += sums.pair_count;
-  }
+  for (const NdtDerivatives& sums : workspace.blocks) total += sums;
   for (Matrix6d* matrix : {&total.curvature, &total.radial_curvature}) {
     matrix->bottomLeftCorner<3, 3>() = matrix->topRightCorner<3, 3>().transpose();
   }

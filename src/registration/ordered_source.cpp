@@ -122,6 +122,38 @@ void OrderedSource::thin(const OrderedSource& source, std::size_t stride) {
   }
 }
 
+void OrderedSource::split(const std::vector<std::uint8_t>& marks, std::size_t count, int threads,
+                          std::vector<OrderedSource>& parts) const {
+  parts.resize(count);
+  // Where each stretch of the points begins in each part.
+  std::array<std::vector<std::size_t>, kParts> places;
+  const auto begin_of = [this](std::size_t stretch) { return stretch * size_ / kParts; };
+  std::vector<std::size_t> sizes(count, 0);
+  for (std::size_t stretch = 0; stretch < kParts; ++stretch) {
+    places[stretch] = sizes;
+    for (std::size_t i = begin_of(stretch); i < begin_of(stretch + 1); ++i) ++sizes[marks[i]];
+  }
+  for (std::size_t mark = 0; mark < count; ++mark) parts[mark].resize(sizes[mark]);
+  forEachChunk(threads, kParts, [&](std::size_t stretch, int) {
+    std::vector<std::size_t>& next = places[stretch];
+    for (std::size_t i = begin_of(stretch); i < begin_of(stretch + 1); ++i) {
+      OrderedSource& part = parts[marks[i]];
+      const std::size_t place = next[marks[i]]++;
+      part.x_[place] = x_[i];
+      part.y_[place] = y_[i];
+      part.z_[place] = z_[i];
+      part.confidence_[place] = confidence_[i];
+      part.non_ground_[place] = non_ground_[i];
+    }
+  });
+  for (OrderedSource& part : parts) {
+    // They are in order as these points are.
+    std::fill(part.groups_of_batch_.begin(), part.groups_of_batch_.end(), std::uint32_t{kPointsPerBatch});
+    part.non_ground_count_ = static_cast<std::size_t>(
+        std::count(part.non_ground_.begin(), part.non_ground_.begin() + static_cast<std::ptrdiff_t>(part.size_), 1.0F));
+  }
+}
+
 bool OrderedSource::mixedUp(std::size_t first, std::size_t run_count) const {
   const std::uint32_t groups = groups_of_batch_[first / kPointsPerBatch];
   return groups == 0 || 2 * run_count > 3 * groups + 8;

@@ -24,6 +24,12 @@ class OrderedSource {
   /// Takes over every `stride`-th point of another.
   void thin(const OrderedSource& source, std::size_t stride);
 
+  /// Deals the points out by their marks: those of mark m to part m, which is taken to be in order.
+  /// @param marks    one a point, each below `count`
+  /// @param threads  the parts do not depend on it
+  void split(const std::vector<std::uint8_t>& marks, std::size_t count, int threads,
+             std::vector<OrderedSource>& parts) const;
+
   std::size_t size() const { return size_; }
 
   /// Coordinates (m, source frame), confidences, and 1 for what is not labelled ground, otherwise 0; behind the last

@@ -14,6 +14,18 @@ struct PoseScorer::Parts {
   double outlier_ratio;
   internal::OrderedSource source;
   internal::BatchWorkspace workspace;
+  struct OfWorker {
+    internal::OrderedSource source;  // in the order of the last pose
+    internal::LevelledSource levelled;
+    internal::BatchWorkspace workspace;
+  };
+  std::vector<OfWorker> of_worker;  // where the target has several levels
+
+  Likelihoods onLevels(const Eigen::Isometry3d& T_map_source, OfWorker& own) const {
+    own.source = source;
+    own.levelled.assign(target, own.source, T_map_source, false, 1, own.workspace);
+    return internal::evaluateLikelihoods(target, own.levelled, T_map_source, outlier_ratio, 1, own.workspace);
+  }
 };
 
 PoseScorer::PoseScorer(const NdtTarget& target, const SourcePoints& source, double outlier_ratio)
@@ -40,7 +52,13 @@ std::vector<Likelihoods> PoseScorer::score(const std::vector<Eigen::Isometry3d>&
   Parts& parts = *parts_;
   std::vector<Likelihoods> likelihoods(poses.size());
   parts.workspace.prepare(internal::threadCount(threads));
+  const bool several_levels = parts.target.levels().size() > 1;
+  if (several_levels) parts.of_worker.resize(static_cast<std::size_t>(internal::threadCount(threads)));
   internal::forEachChunk(threads, poses.size(), [&](std::size_t i, int worker) {
+    if (several_levels) {
+      likelihoods[i] = parts.onLevels(poses[i], parts.of_worker[static_cast<std::size_t>(worker)]);
+      return;
+    }
     likelihoods[i] = internal::likelihoodsInOrder(parts.target.fine(), parts.source, poses[i], parts.outlier_ratio,
                                                   *parts.workspace.scratch_of_worker[static_cast<std::size_t>(worker)]);
   });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <vector>
 
 #include "common/executor.h"
 #include "registration/batch_voxel_finder.h"
@@ -31,26 +32,17 @@ void add(const BatchTotals& batch, BatchTotals& total) {
   total.pair_count += batch.pair_count;
 }
 
+std::size_t batchCount(const OrderedSource& source) { return (source.size() + kPointsPerBatch - 1) / kPointsPerBatch; }
+
 }  // namespace
 
 NdtDerivatives VectorizedNdtObjective::evaluate(OrderedSource& source, const Eigen::Isometry3d& T_map_source,
                                                 int threads, BatchWorkspace& workspace) const {
-  NdtDerivatives derivatives;
-  if (!VoxelPairs::reachable(level_, T_map_source)) return derivatives;
-  const PairParameters parameters = pairParameters(level_, method_, score_, weighting_);
-  const BatchVoxelFinder finder(level_, method_, T_map_source);
-  workspace.prepare(threads);
-  workspace.batch_totals.resize((source.size() + kPointsPerBatch - 1) / kPointsPerBatch);
-  internal::forEachChunk(threads, workspace.batch_totals.size(), [&](std::size_t batch, int worker) {
-    BatchScratch& scratch = *workspace.scratch_of_worker[static_cast<std::size_t>(worker)];
-    const std::size_t first = batch * kPointsPerBatch;
-    finder.find(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
-    workspace.batch_totals[batch] =
-        evaluatePairs(scratch.points, source.confidence() + first, scratch.units, scratch.voxels, parameters);
-  });
-  BatchTotals total{};
-  for (const BatchTotals& batch : workspace.batch_totals) add(batch, total);
+  return evaluateAll({{this, &source}}, T_map_source, threads, workspace);
+}
 
+NdtDerivatives VectorizedNdtObjective::derivativesOf(const BatchTotals& total) const {
+  NdtDerivatives derivatives;
   derivatives.score = total.score;
   derivatives.force = -score_.d2 * Eigen::Map<const Eigen::Vector3d>(total.pull);
   derivatives.moment = -score_.d2 * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(total.moment);
@@ -58,6 +50,50 @@ NdtDerivatives VectorizedNdtObjective::evaluate(OrderedSource& source, const Eig
   derivatives.radial_curvature = score_.d2 * score_.d2 * symmetricFromRows(total.radial);
   derivatives.pair_count = total.pair_count;
   return derivatives;
+}
+
+NdtDerivatives evaluateAll(const std::vector<ObjectiveOfPoints>& parts, const Eigen::Isometry3d& T_map_source,
+                           int threads, BatchWorkspace& workspace) {
+  struct Prepared {
+    BatchVoxelFinder finder;
+    PairParameters parameters;
+    std::size_t first_batch, end_batch;
+  };
+  std::vector<Prepared> prepared;
+  prepared.reserve(parts.size());
+  std::size_t batch_count = 0;
+  for (const ObjectiveOfPoints& part : parts) {
+    const VectorizedNdtObjective& objective = *part.objective;
+    const bool reachable = VoxelPairs::reachable(objective.level_, T_map_source);
+    const std::size_t end = batch_count + (reachable ? batchCount(*part.points) : 0);
+    prepared.push_back({{objective.level_, objective.method_, T_map_source},
+                        pairParameters(objective.level_, objective.method_, objective.score_, objective.weighting_),
+                        batch_count,
+                        end});
+    batch_count = end;
+  }
+  workspace.prepare(threads);
+  workspace.batch_totals.resize(batch_count);
+  forEachChunk(threads, batch_count, [&](std::size_t batch, int worker) {
+    std::size_t p = 0;
+    while (batch >= prepared[p].end_batch) ++p;
+    const Prepared& part = prepared[p];
+    OrderedSource& points = *parts[p].points;
+    BatchScratch& scratch = *workspace.scratch_of_worker[static_cast<std::size_t>(worker)];
+    const std::size_t first = (batch - part.first_batch) * kPointsPerBatch;
+    part.finder.find(points, first, std::min(kPointsPerBatch, points.size() - first), scratch);
+    workspace.batch_totals[batch] =
+        evaluatePairs(scratch.points, points.confidence() + first, scratch.units, scratch.voxels, part.parameters);
+  });
+  NdtDerivatives sum;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    BatchTotals total{};
+    for (std::size_t b = prepared[p].first_batch; b < prepared[p].end_batch; ++b) {
+      add(workspace.batch_totals[b], total);
+    }
+    sum += parts[p].objective->derivativesOf(total);
+  }
+  return sum;
 }
 
 }  // namespace saw_ndt::internal

@@ -1,12 +1,22 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "registration/batch_workspace.h"
 #include "registration/ndt_objective.h"
 #include "registration/ordered_source.h"
 
 namespace saw_ndt::internal {
+
+struct BatchTotals;
+class VectorizedNdtObjective;
+
+/// Points and what they are evaluated by.
+struct ObjectiveOfPoints {
+  const VectorizedNdtObjective* objective;
+  OrderedSource* points;
+};
 
 /// NdtObjective in single precision and with the processor's vector instructions: score and derivatives agree with it
 /// to about 1e-6 of their size, more than ten times faster.
@@ -22,10 +32,18 @@ class VectorizedNdtObjective {
                           BatchWorkspace& workspace) const;
 
  private:
+  friend NdtDerivatives evaluateAll(const std::vector<ObjectiveOfPoints>& parts, const Eigen::Isometry3d& T_map_source,
+                                    int threads, BatchWorkspace& workspace);
+  NdtDerivatives derivativesOf(const BatchTotals& total) const;
+
   const internal::NdtLevel& level_;
   NeighborhoodSearchMethod method_;
   ScoreParameters score_;
   PairWeighting weighting_;
 };
+
+/// The sum of all, as one piece of work for the threads.
+NdtDerivatives evaluateAll(const std::vector<ObjectiveOfPoints>& parts, const Eigen::Isometry3d& T_map_source,
+                           int threads, BatchWorkspace& workspace);
 
 }  // namespace saw_ndt::internal

@@ -171,7 +171,7 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
       begin(progress, prefix + "giving PCL the points of " + std::to_string(map_scans.size()) + " scans",
             map_scans.size());
       SourceAligner pcl =
-          pclNdtAligner(mapPoints(*source.scans(map_scans), progress.step_done), options_.resolution_m, target);
+          pclNdtAligner(mapPoints(*source.scans(map_scans), progress.step_done), target.resolution(), target);
       localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(std::move(pcl), options)));
     } else {
       localizers.push_back(startedAt(result.T_map_base.front(), std::make_shared<Localizer>(target, options)));

@@ -10,6 +10,7 @@
 
 #include "report/localization_summary.h"
 #include "report/voxel_cloud.h"
+#include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 
 namespace saw_ndt {
@@ -32,11 +33,11 @@ struct BenchmarkOptions {
   /// The columns of the paper's Table I, then this project's own.
   std::vector<std::string> methods{"classical", "unweighted-s50", "weighted-s100", "weighted-s50", "weighted"};
   std::vector<MapDrive> drives{MapDrive::SAME};
-  std::string map_scans = ":";  ///< scans of the map, a Python slice of either drive's scans
-  std::string scans = ":";      ///< scans to localize, a Python slice
-  double skip_s = 3.0;          ///< seconds at the start that the metrics leave out
-  double resolution_m = 1.0;    ///< edge of a voxel
-  LocalizerOptions localizer;   ///< of every method but for `method`; segmentation and threads are the map's, too
+  std::string map_scans = ":";                           ///< scans of the map, a Python slice of either drive's scans
+  std::string scans = ":";                               ///< scans to localize, a Python slice
+  double skip_s = 3.0;                                   ///< seconds at the start that the metrics leave out
+  double resolution_m = DriveMapOptions().resolution_m;  ///< edge of a voxel of the maps
+  LocalizerOptions localizer;  ///< of every method but for `method`; segmentation and threads are the map's, too
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;

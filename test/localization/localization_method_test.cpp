@@ -45,6 +45,10 @@ TEST(LocalizationMethod, ThePapersMethodsHaveThePapersValues) {
     EXPECT_EQ(method.voxels.confidence.ground, e.segment ? 0.5 : 1.0);
     EXPECT_EQ(method.voxels.confidence.non_ground, 1.0);
     EXPECT_EQ(method.voxels.min_eigenvalue_ratio, 0.01);
+    EXPECT_FALSE(method.voxels.unbounded_ground);
+    EXPECT_FALSE(method.ground_in_own_voxel);
+    EXPECT_EQ(method.voxels.sizes.finest_m, 1.0);
+    EXPECT_EQ(method.voxels.sizes.coarsest_m, 0.0);
   }
 }
 
@@ -60,6 +64,7 @@ TEST(LocalizationMethod, ChecksNameTheField) {
     refused("mismatch_penalty", &LocalizationMethod::mismatch_penalty, value);
     refused("outlier_ratio", &LocalizationMethod::outlier_ratio, value);
   }
+  refused("coarse_settled_voxels", &LocalizationMethod::coarse_settled_voxels, 0.0);
   refused("outlier_ratio", &LocalizationMethod::outlier_ratio, 0.0);
   refused("outlier_ratio", &LocalizationMethod::outlier_ratio, 1.0);
   LocalizationMethod method;

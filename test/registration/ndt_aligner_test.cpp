@@ -53,7 +53,7 @@ TEST(NdtAligner, TheResultIsAMaximumOfTheScore) {
   const AlignmentResult result = aligner.align(map, source, randomPose(random, 0.3, 0.05), options);
   NdtEvaluation evaluation;
   evaluation.begin(map, source, options);
-  const Evaluation evaluate = evaluation.onFineLevel();
+  const Evaluation evaluate = evaluation.onMatchingLevels(result.T_map_source);
   const double best = evaluate(result.T_map_source).score;
   for (int trial = 0; trial < 50; ++trial) {
     const Eigen::Isometry3d beside = result.T_map_source * randomPose(random, 0.01, 0.002);

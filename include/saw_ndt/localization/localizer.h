@@ -21,7 +21,7 @@ struct SAW_NDT_EXPORT LocalizerOptions {
   double source_voxel_size_m = 0.2;  ///< edge of the voxels that thin a scan; 0 keeps every point
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< mounting of the LiDAR on the vehicle
   MotionPredictionOptions prediction;
-  AlignmentOptions alignment;  ///< use_weights, mismatch_penalty and outlier_ratio are the method's
+  AlignmentOptions alignment;  ///< what LocalizationMethod has as well is the method's
   AcceptanceOptions acceptance;
   /// Go on where the labels of the map were made by other segmentation options, such as those of another sensor.
   bool allow_other_segmentation = false;

@@ -21,9 +21,11 @@ enum class ScoreFunction {
   PAPER,      ///< eq. (2) of the weighted NDT paper: amplitude 1, d2 = 1
 };
 
-/// How well a pose explains a source, in figures that weights do not change. Each is of Magnusson's score function.
+/// How well a pose explains a source, in figures that weights do not change. Each is of Magnusson's score function for
+/// voxels of 1 m, whatever the map's are: they depend little on how large those are, and one threshold serves all maps.
 struct Likelihoods {
-  double unweighted = 0.0;  ///< sum over all pairs / number of source points: PCL's, with every weight 1
+  /// Sum over all pairs / number of source points: PCL's, with every weight 1, where voxels are of 1 m.
+  double unweighted = 0.0;
   /// The same over the points not labelled ground. The ground keeps the others high where a pose is lost along a road.
   double non_ground = 0.0;
   double nearest_voxel = 0.0;  ///< mean over the points that meet a voxel of the score of their best voxel
@@ -43,6 +45,7 @@ enum class Arithmetic {
 
 struct SAW_NDT_EXPORT AlignmentOptions {
   NeighborhoodSearchMethod neighborhood_search = NeighborhoodSearchMethod::DIRECT7;
+  bool ground_in_own_voxel = false;  ///< points labelled ground are paired with the voxel they lie in alone
   ScoreFunction score_function = ScoreFunction::MAGNUSSON;
   double outlier_ratio = 0.55;    ///< expected share of outliers, in (0, 1)
   bool use_weights = true;        ///< false, or a source or map without labels: classical NDT, W = 1
@@ -50,10 +53,10 @@ struct SAW_NDT_EXPORT AlignmentOptions {
 
   Arithmetic arithmetic = Arithmetic::SINGLE;
   Optimizer optimizer = Optimizer::DAMPED_NEWTON;
-  int max_iterations = 35;              ///< steps on the fine level, 1 or more
+  int max_iterations = 35;              ///< steps on the levels that match, 1 or more
   double translation_epsilon_m = 1e-3;  ///< converged when a step is shorter than this (m) ...
   double rotation_epsilon_rad = 5e-5;   ///< ... and turns less than this (rad)
-  double max_step_m = 0.5;              ///< longest step of DAMPED_NEWTON (m), at 1 m voxels; grows with the voxels
+  double max_step_m = 0.5;              ///< longest step of DAMPED_NEWTON (m), at 1 m voxels; grows with the smallest
   /// Least share of the Gauss-Newton curvature that a Newton step of DAMPED_NEWTON reckons with, in (0, 1]; 1 is
   /// iteratively reweighted least squares, towards 0 is Newton's method, which leaves the basin where it is not
   /// concave.
@@ -62,7 +65,7 @@ struct SAW_NDT_EXPORT AlignmentOptions {
   bool use_coarse_level = true;         ///< DAMPED_NEWTON: start on the coarse level where the map has one
   int coarse_max_iterations = 30;       ///< steps on the coarse level at most, 1 or more
   int coarse_stride = 4;                ///< every how many-th source point the coarse level uses, 1 or more
-  double coarse_settled_voxels = 0.02;  ///< the coarse level is left when a step is shorter, in fine voxels
+  double coarse_settled_voxels = 0.02;  ///< the coarse level is left when a step is shorter, in the smallest voxels
 
   double line_search_max_step = 0.1;   ///< NEWTON_MORE_THUENTE: longest step, metres and radians in one norm
   double line_search_min_step = 1e-6;  ///< NEWTON_MORE_THUENTE: shortest step; not above the epsilons
@@ -89,8 +92,8 @@ SAW_NDT_EXPORT const char* toString(AlignmentStatus status);
 struct AlignmentResult {
   Eigen::Isometry3d T_map_source = Eigen::Isometry3d::Identity();
   AlignmentStatus status = AlignmentStatus::NO_SOURCE;
-  int iterations = 0;   ///< steps taken on the fine level
-  int evaluations = 0;  ///< evaluations of score, gradient and Hessian on either level
+  int iterations = 0;   ///< steps taken on the levels that match
+  int evaluations = 0;  ///< evaluations of score, gradient and Hessian on any level
   double score = 0.0;   ///< at the pose of the last evaluation, less than the epsilons from T_map_source if converged
   double likelihood = 0.0;  ///< score / number of source points, as PCL; it changes with the weights
   /// Of the final pose, where AlignmentOptions::evaluate_likelihoods asks for them; with PCL's outlier ratio.

@@ -22,7 +22,7 @@ class SAW_NDT_EXPORT PoseScorer {
   PoseScorer(PoseScorer&& other) noexcept;
   PoseScorer& operator=(PoseScorer&& other) noexcept;
 
-  /// The likelihoods on the fine level at each pose, T_map_source. They depend on that pose alone.
+  /// The likelihoods at each pose, T_map_source. They depend on that pose alone.
   /// @param threads  0: all cores; the likelihoods do not depend on it
   std::vector<Likelihoods> score(const std::vector<Eigen::Isometry3d>& poses, int threads = 0);
 
