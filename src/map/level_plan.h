@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "saw_ndt/map/weighted_voxel_map.h"
 
 namespace saw_ndt::internal {
+
+/// Levels of a target: at most those of 1, 2, 4, 8 and 16 voxels of a map.
+constexpr std::size_t kMostLevels = 5;
 
 /// One size of voxels that a target has, and which of them.
 struct LevelPlan {

@@ -73,8 +73,9 @@ bool complete(const SymmetricMatrices& matrices, std::size_t place, const VoxelW
   const double second = sorted[1];
   if (second < min_spread_m * min_spread_m) return false;
   Eigen::Vector3d raised = eigenvalues.cwiseMax(weighting.min_eigenvalue_ratio * greatest);
-  if (unbounded && eigenvalues.minCoeff() < kFlat * second) {
-    for (double& value : raised) value *= value > kFlat * second ? kUnbounded : 1.0;
+  int across = 0;
+  if (unbounded && eigenvalues.minCoeff(&across) < kFlat * second) {
+    for (int i = 0; i < 3; ++i) raised[i] *= i == across ? 1.0 : kUnbounded;
   }
   statistics.covariance = composed(matrices, place, raised);
   statistics.inverse_covariance = composed(matrices, place, raised.cwiseInverse());

@@ -1,8 +1,10 @@
 #include "registration/levelled_source.h"
 
 #include <algorithm>
+#include <array>
 
 #include "common/executor.h"
+#include "map/level_plan.h"
 #include "map/ndt_level.h"
 #include "registration/batch_voxel_finder.h"
 
@@ -13,11 +15,11 @@ namespace {
 // the power of three of the one before.
 class LevelFinder {
  public:
-  explicit LevelFinder(const std::vector<NdtLevel>& levels) : levels_(levels), cursors_(levels.size()) {}
+  LevelFinder(const std::vector<NdtLevel>& levels, std::size_t first) : levels_(levels), first_(first) {}
 
   std::uint8_t levelAt(const VoxelCoordinate& finest) {
     const std::size_t last = levels_.size() - 1;
-    for (std::size_t level = 0; level < last; ++level) {
+    for (std::size_t level = first_; level < last; ++level) {
       const auto shift = static_cast<int>(level);
       const VoxelCoordinate voxel(finest.x() >> shift, finest.y() >> shift, finest.z() >> shift);
       const VoxelIndex::Place place = levels_[level].index().place(voxel, cursors_[level]);
@@ -28,13 +30,14 @@ class LevelFinder {
 
  private:
   const std::vector<NdtLevel>& levels_;
-  std::vector<VoxelIndex::Cursor> cursors_;
+  std::size_t first_;
+  std::array<VoxelIndex::Cursor, kMostLevels> cursors_;
 };
 
 }  // namespace
 
 void LevelledSource::assign(const NdtTarget& target, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
-                            bool ground_apart, int threads, BatchWorkspace& workspace) {
+                            std::size_t first_level, bool ground_apart, int threads, BatchWorkspace& workspace) {
   const std::vector<NdtLevel>& levels = target.levels();
   level_count_ = levels.size();
   part_of_point_.assign(source.size(), static_cast<std::uint8_t>(level_count_ - 1));
@@ -45,7 +48,7 @@ void LevelledSource::assign(const NdtTarget& target, OrderedSource& source, cons
       BatchScratch& scratch = *workspace.scratch_of_worker[static_cast<std::size_t>(worker)];
       const std::size_t first = batch * kPointsPerBatch;
       finder.place(source, first, std::min(kPointsPerBatch, source.size() - first), scratch);
-      LevelFinder level_finder(levels);
+      LevelFinder level_finder(levels, first_level);
       const BatchPoints& points = scratch.points;
       for (std::size_t run = 0; run < points.run_count; ++run) {
         const auto begin = static_cast<std::size_t>(points.run_starts[run]);

@@ -16,10 +16,11 @@ class LevelledSource {
  public:
   /// Takes points over.
   /// @param source        is put in order for the finest level at that pose
+  /// @param first_level   finer ones get no points
   /// @param ground_apart  whether parts of the ground follow those of the rest
   /// @param threads       the result does not depend on it
-  void assign(const NdtTarget& target, OrderedSource& source, const Eigen::Isometry3d& T_map_source, bool ground_apart,
-              int threads, BatchWorkspace& workspace);
+  void assign(const NdtTarget& target, OrderedSource& source, const Eigen::Isometry3d& T_map_source,
+              std::size_t first_level, bool ground_apart, int threads, BatchWorkspace& workspace);
 
   /// The points of each level of the target, then, where it is apart, the ground of each.
   std::vector<OrderedSource>& parts() { return parts_; }

@@ -18,6 +18,7 @@ StepLimits limitsOf(const NdtTarget& target, const AlignmentOptions& options) {
           options.max_step_m * target.resolution()};
 }
 
+// To within a fraction of a smallest voxel, where the guess is not as good as that.
 void alignCoarsely(const NdtTarget& target, const AlignmentOptions& options, NdtEvaluation& evaluation,
                    AlignmentResult& result) {
   const Eigen::Isometry3d guess = result.T_map_source;
@@ -27,9 +28,29 @@ void alignCoarsely(const NdtTarget& target, const AlignmentOptions& options, Ndt
   limits.rotation_epsilon_rad = 1.0;
   limits.max_step_m = options.max_step_m * target.coarse().resolution();
   dampedNewton(evaluation.onCoarseLevel(), limits, options.min_curvature_share, result);
-  // A first step that is already small says that the guess is good; the coarse optimum is no better than it.
-  if (result.evaluations == 1) result.T_map_source = guess;
+  if (result.evaluations == 1) {
+    // A first step that is already small says that the guess is good; the coarse optimum is no better than it.
+    result.T_map_source = guess;
+  } else if (target.levels().size() > 1) {
+    // From there the optimum may be farther than the smallest voxels reach.
+    limits.max_step_m = options.max_step_m * target.levels()[1].resolution();
+    dampedNewton(evaluation.onMatchingLevels(result.T_map_source, 1), limits, options.min_curvature_share, result);
+  }
   result.iterations = 0;
+}
+
+// Points keep to the level that they have where the optimum is sought from, and draw it there a little: it is sought
+// again from where it was found, while that is far.
+void alignOnSeveralLevels(const NdtTarget& target, const AlignmentOptions& options, NdtEvaluation& evaluation,
+                          AlignmentResult& result) {
+  constexpr int kMostRounds = 4;
+  constexpr double kNearVoxels = 0.1;
+  const StepLimits limits = limitsOf(target, options);
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Eigen::Vector3d from = result.T_map_source.translation();
+    dampedNewton(evaluation.onMatchingLevels(result.T_map_source), limits, options.min_curvature_share, result);
+    if ((result.T_map_source.translation() - from).norm() < kNearVoxels * target.resolution()) break;
+  }
 }
 
 }  // namespace
@@ -60,11 +81,13 @@ AlignmentResult NdtAligner::align(const NdtTarget& target, const SourcePoints& s
     alignCoarsely(target, options, evaluation, result);
   }
   const StepLimits limits = limitsOf(target, options);
-  const Evaluation on_matching_levels = evaluation.onMatchingLevels(result.T_map_source);
-  if (damped_newton) {
-    dampedNewton(on_matching_levels, limits, options.min_curvature_share, result);
+  if (!damped_newton) {
+    newtonMoreThuente(evaluation.onMatchingLevels(guess), limits, options.line_search_min_step,
+                      options.line_search_max_step, result);
+  } else if (target.levels().size() > 1) {
+    alignOnSeveralLevels(target, options, evaluation, result);
   } else {
-    newtonMoreThuente(on_matching_levels, limits, options.line_search_min_step, options.line_search_max_step, result);
+    dampedNewton(evaluation.onMatchingLevels(result.T_map_source), limits, options.min_curvature_share, result);
   }
   result.likelihood = result.score / static_cast<double>(source.size());
   if (options.evaluate_likelihoods) result.likelihoods = evaluation.likelihoods(result.T_map_source);

@@ -35,7 +35,7 @@ Evaluation NdtEvaluation::exactly(const internal::NdtLevel& level, std::size_t s
 }
 
 // As LevelledSource, in double precision.
-Evaluation NdtEvaluation::exactlyInParts(const Eigen::Isometry3d& T_map_source_near) {
+Evaluation NdtEvaluation::exactlyInParts(const Eigen::Isometry3d& T_map_source_near, std::size_t first_level) {
   const std::vector<NdtLevel>& levels = target_->levels();
   exact_parts_.assign(2 * levels.size(), {});
   std::vector<NdtObjective> objectives;
@@ -46,7 +46,7 @@ Evaluation NdtEvaluation::exactlyInParts(const Eigen::Isometry3d& T_map_source_n
   for (std::size_t i = 0; i < source_->size(); ++i) {
     const Eigen::Vector3f point(source_->x[i], source_->y[i], source_->z[i]);
     const Eigen::Vector3d in_map = T_map_source_near * point.cast<double>();
-    std::size_t level = 0;
+    std::size_t level = first_level;
     while (level + 1 < levels.size() && levels[level].find(in_map) == VoxelIndex::kNone) ++level;
     const auto label = static_cast<StructuralLabel>(source_->label[i]);
     const std::size_t part = label == StructuralLabel::GROUND ? levels.size() + level : level;
@@ -75,14 +75,15 @@ Evaluation NdtEvaluation::onCoarseLevel() {
   return onLevel(target_->coarse(), thinned_);
 }
 
-Evaluation NdtEvaluation::onMatchingLevels(const Eigen::Isometry3d& T_map_source_near) {
+Evaluation NdtEvaluation::onMatchingLevels(const Eigen::Isometry3d& T_map_source_near, std::size_t first_level) {
   const bool in_doubles = options_->arithmetic == Arithmetic::DOUBLE;
   if (!inParts()) return in_doubles ? exactly(target_->fine(), 1) : onLevel(target_->fine(), ordered_);
   const int threads = internal::threadCount(options_->threads);
   if (!in_doubles || options_->evaluate_likelihoods) {
-    levelled_.assign(*target_, ordered_, T_map_source_near, options_->ground_in_own_voxel, threads, batches_);
+    levelled_.assign(*target_, ordered_, T_map_source_near, first_level, options_->ground_in_own_voxel, threads,
+                     batches_);
   }
-  if (in_doubles) return exactlyInParts(T_map_source_near);
+  if (in_doubles) return exactlyInParts(T_map_source_near, first_level);
   objectives_.clear();
   parts_.clear();
   for (std::size_t part = 0; part < levelled_.parts().size(); ++part) {

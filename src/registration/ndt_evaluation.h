@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -25,9 +26,9 @@ class NdtEvaluation {
 
   /// Score and derivatives on the coarse level over every `coarse_stride`-th source point.
   Evaluation onCoarseLevel();
-  /// The same over all on the levels that match. Where there are several, a point keeps to the one that it has at a
-  /// pose near which it is evaluated.
-  Evaluation onMatchingLevels(const Eigen::Isometry3d& T_map_source_near);
+  /// The same over all on the levels that match, or those of them from `first_level` on. Where there are several, a
+  /// point keeps to the one that it has at a pose near which it is evaluated. It ends what the one before it returned.
+  Evaluation onMatchingLevels(const Eigen::Isometry3d& T_map_source_near, std::size_t first_level = 0);
   /// Likelihoods on the levels of the last onMatchingLevels().
   Likelihoods likelihoods(const Eigen::Isometry3d& T_map_source);
 
@@ -37,7 +38,7 @@ class NdtEvaluation {
   bool inParts() const;
   Evaluation onLevel(const internal::NdtLevel& level, OrderedSource& points);
   Evaluation exactly(const internal::NdtLevel& level, std::size_t stride);
-  Evaluation exactlyInParts(const Eigen::Isometry3d& T_map_source_near);
+  Evaluation exactlyInParts(const Eigen::Isometry3d& T_map_source_near, std::size_t first_level);
 
   const NdtTarget* target_ = nullptr;
   const SourcePoints* source_ = nullptr;
@@ -46,7 +47,7 @@ class NdtEvaluation {
   OrderedSource thinned_;
   LevelledSource levelled_;
   std::vector<VectorizedNdtObjective> objectives_;  // of the parts of levelled_
-  std::vector<ObjectiveOfPoints> parts_;
+  PartsOfSource parts_;
   BatchWorkspace batches_;
   std::vector<SourcePoints> exact_parts_;
   NdtObjective::Workspace workspace_;

@@ -20,6 +20,9 @@ constexpr double kVoxelsPerColumn = 8.0;
 // How many parts of the points are put in order side by side.
 constexpr std::size_t kParts = 4;
 
+// How many parts they can be dealt out to.
+constexpr std::size_t kMostParts = 16;
+
 // Which voxels the runs of a batch lie in, numbered as they are met.
 class VoxelGroups {
  public:
@@ -126,16 +129,17 @@ void OrderedSource::split(const std::vector<std::uint8_t>& marks, std::size_t co
                           std::vector<OrderedSource>& parts) const {
   parts.resize(count);
   // Where each stretch of the points begins in each part.
-  std::array<std::vector<std::size_t>, kParts> places;
+  using Places = std::array<std::size_t, kMostParts>;
+  std::array<Places, kParts> places;
   const auto begin_of = [this](std::size_t stretch) { return stretch * size_ / kParts; };
-  std::vector<std::size_t> sizes(count, 0);
+  Places sizes{};
   for (std::size_t stretch = 0; stretch < kParts; ++stretch) {
     places[stretch] = sizes;
     for (std::size_t i = begin_of(stretch); i < begin_of(stretch + 1); ++i) ++sizes[marks[i]];
   }
   for (std::size_t mark = 0; mark < count; ++mark) parts[mark].resize(sizes[mark]);
   forEachChunk(threads, kParts, [&](std::size_t stretch, int) {
-    std::vector<std::size_t>& next = places[stretch];
+    Places& next = places[stretch];
     for (std::size_t i = begin_of(stretch); i < begin_of(stretch + 1); ++i) {
       OrderedSource& part = parts[marks[i]];
       const std::size_t place = next[marks[i]]++;

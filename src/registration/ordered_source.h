@@ -25,7 +25,7 @@ class OrderedSource {
   void thin(const OrderedSource& source, std::size_t stride);
 
   /// Deals the points out by their marks: those of mark m to part m, which is taken to be in order.
-  /// @param marks    one a point, each below `count`
+  /// @param marks    one a point, each below `count`, which is 16 at most
   /// @param threads  the parts do not depend on it
   void split(const std::vector<std::uint8_t>& marks, std::size_t count, int threads,
              std::vector<OrderedSource>& parts) const;

@@ -23,7 +23,7 @@ struct PoseScorer::Parts {
 
   Likelihoods onLevels(const Eigen::Isometry3d& T_map_source, OfWorker& own) const {
     own.source = source;
-    own.levelled.assign(target, own.source, T_map_source, false, 1, own.workspace);
+    own.levelled.assign(target, own.source, T_map_source, 0, false, 1, own.workspace);
     return internal::evaluateLikelihoods(target, own.levelled, T_map_source, outlier_ratio, 1, own.workspace);
   }
 };

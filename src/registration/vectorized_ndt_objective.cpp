@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
-#include <vector>
 
 #include "common/executor.h"
 #include "registration/batch_voxel_finder.h"
@@ -52,15 +51,14 @@ NdtDerivatives VectorizedNdtObjective::derivativesOf(const BatchTotals& total) c
   return derivatives;
 }
 
-NdtDerivatives evaluateAll(const std::vector<ObjectiveOfPoints>& parts, const Eigen::Isometry3d& T_map_source,
-                           int threads, BatchWorkspace& workspace) {
+NdtDerivatives evaluateAll(const PartsOfSource& parts, const Eigen::Isometry3d& T_map_source, int threads,
+                           BatchWorkspace& workspace) {
   struct Prepared {
     BatchVoxelFinder finder;
     PairParameters parameters;
     std::size_t first_batch, end_batch;
   };
-  std::vector<Prepared> prepared;
-  prepared.reserve(parts.size());
+  boost::container::static_vector<Prepared, 2 * kMostLevels> prepared;
   std::size_t batch_count = 0;
   for (const ObjectiveOfPoints& part : parts) {
     const VectorizedNdtObjective& objective = *part.objective;

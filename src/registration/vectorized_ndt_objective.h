@@ -1,8 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <vector>
+#include <boost/container/static_vector.hpp>
 
+#include "map/level_plan.h"
 #include "registration/batch_workspace.h"
 #include "registration/ndt_objective.h"
 #include "registration/ordered_source.h"
@@ -17,6 +18,7 @@ struct ObjectiveOfPoints {
   const VectorizedNdtObjective* objective;
   OrderedSource* points;
 };
+using PartsOfSource = boost::container::static_vector<ObjectiveOfPoints, 2 * kMostLevels>;
 
 /// NdtObjective in single precision and with the processor's vector instructions: score and derivatives agree with it
 /// to about 1e-6 of their size, more than ten times faster.
@@ -32,8 +34,8 @@ class VectorizedNdtObjective {
                           BatchWorkspace& workspace) const;
 
  private:
-  friend NdtDerivatives evaluateAll(const std::vector<ObjectiveOfPoints>& parts, const Eigen::Isometry3d& T_map_source,
-                                    int threads, BatchWorkspace& workspace);
+  friend NdtDerivatives evaluateAll(const PartsOfSource& parts, const Eigen::Isometry3d& T_map_source, int threads,
+                                    BatchWorkspace& workspace);
   NdtDerivatives derivativesOf(const BatchTotals& total) const;
 
   const internal::NdtLevel& level_;
@@ -43,7 +45,7 @@ class VectorizedNdtObjective {
 };
 
 /// The sum of all, as one piece of work for the threads.
-NdtDerivatives evaluateAll(const std::vector<ObjectiveOfPoints>& parts, const Eigen::Isometry3d& T_map_source,
-                           int threads, BatchWorkspace& workspace);
+NdtDerivatives evaluateAll(const PartsOfSource& parts, const Eigen::Isometry3d& T_map_source, int threads,
+                           BatchWorkspace& workspace);
 
 }  // namespace saw_ndt::internal

@@ -183,8 +183,8 @@ TEST_F(LocalizeApp, BadMapsAreNamed) {
     expectLocalizeFails(1, parts);
   };
   std::string other = good;
-  other[8] = 3;
-  refused(other, {"a.map: offset 8: map version 3"});
+  other[8] = 4;
+  refused(other, {"a.map: offset 8: map version 4"});
   other = good;
   other[good.size() / 2] = static_cast<char>(other[good.size() / 2] ^ 1);
   refused(other, {"a.map: offset ", "damaged"});
