@@ -36,7 +36,7 @@ LocalizerOptions withMethod(LocalizerOptions options) {
   options.alignment.mismatch_penalty = options.method.mismatch_penalty;
   options.alignment.outlier_ratio = options.method.outlier_ratio;
   options.alignment.coarse_settled_voxels = options.method.coarse_settled_voxels;
-  options.alignment.ground_in_own_voxel = options.method.ground_in_own_voxel;
+  options.alignment.ground_in_own_column = options.method.ground_in_own_column;
   options.alignment.evaluate_likelihoods = true;
   return options;
 }

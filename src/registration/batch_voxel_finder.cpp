@@ -18,6 +18,7 @@ static_assert(offsetof(internal::PackedNdtCell, mean_from_centre) == 0 && aligno
 static_assert(offsetof(RunVoxel, mean) == 0 && sizeof(RunVoxel) == 16 && alignof(RunVoxel) == 16);
 
 constexpr NeighbourRow kOwnVoxel[] = {{0, 0, false}};
+constexpr NeighbourRow kAboveAndBelow[] = {{0, -1, false}, {0, 0, false}, {0, 1, false}};
 constexpr NeighbourRow kSharedFaces[] = {{0, -1, false}, {-1, 0, false}, {0, 0, true}, {1, 0, false}, {0, 1, false}};
 constexpr NeighbourRow kAllAround[] = {{-1, -1, true}, {0, -1, true}, {1, -1, true}, {-1, 0, true}, {0, 0, true},
                                        {1, 0, true},   {-1, 1, true}, {0, 1, true},  {1, 1, true}};
@@ -74,6 +75,8 @@ void BatchVoxelFinder::move(const OrderedSource& source, std::size_t first, std:
 
 void BatchVoxelFinder::findVoxels(BatchScratch& scratch) const {
   switch (method_) {
+    case NeighborhoodSearchMethod::DIRECT3:
+      return findVoxelsIn(kAboveAndBelow, scratch);
     case NeighborhoodSearchMethod::DIRECT1:
       return findVoxelsIn(kOwnVoxel, scratch);
     case NeighborhoodSearchMethod::DIRECT7:

@@ -12,8 +12,8 @@ template <typename Objective>
 Objective NdtEvaluation::objectiveOn(const internal::NdtLevel& level, bool ground) const {
   const PairWeighting weighting{options_->use_weights && target_->labelled() && source_->labelled,
                                 options_->mismatch_penalty, target_->weighting().confidence};
-  const bool own_voxel = ground && options_->ground_in_own_voxel;
-  return {level, own_voxel ? NeighborhoodSearchMethod::DIRECT1 : options_->neighborhood_search,
+  const bool own_column = ground && options_->ground_in_own_column;
+  return {level, own_column ? NeighborhoodSearchMethod::DIRECT3 : options_->neighborhood_search,
           scoreParameters(options_->score_function, options_->outlier_ratio, level.resolution()), weighting};
 }
 
@@ -26,7 +26,7 @@ void NdtEvaluation::begin(const NdtTarget& target, const SourcePoints& source, c
   }
 }
 
-bool NdtEvaluation::inParts() const { return target_->levels().size() > 1 || options_->ground_in_own_voxel; }
+bool NdtEvaluation::inParts() const { return target_->levels().size() > 1 || options_->ground_in_own_column; }
 
 Evaluation NdtEvaluation::exactly(const internal::NdtLevel& level, std::size_t stride) {
   return [this, objective = objectiveOn<NdtObjective>(level, false), stride](const Eigen::Isometry3d& T) {
@@ -80,7 +80,7 @@ Evaluation NdtEvaluation::onMatchingLevels(const Eigen::Isometry3d& T_map_source
   if (!inParts()) return in_doubles ? exactly(target_->fine(), 1) : onLevel(target_->fine(), ordered_);
   const int threads = internal::threadCount(options_->threads);
   if (!in_doubles || options_->evaluate_likelihoods) {
-    levelled_.assign(*target_, ordered_, T_map_source_near, first_level, options_->ground_in_own_voxel, threads,
+    levelled_.assign(*target_, ordered_, T_map_source_near, first_level, options_->ground_in_own_column, threads,
                      batches_);
   }
   if (in_doubles) return exactlyInParts(T_map_source_near, first_level);

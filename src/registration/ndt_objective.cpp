@@ -126,6 +126,10 @@ NdtDerivatives NdtObjective::evaluate(const SourcePoints& source, const Eigen::I
       block = weighted ? &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT7, true>
                        : &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT7, false>;
       break;
+    case NeighborhoodSearchMethod::DIRECT3:
+      block = weighted ? &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT3, true>
+                       : &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT3, false>;
+      break;
     case NeighborhoodSearchMethod::DIRECT1:
       block = weighted ? &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT1, true>
                        : &NdtObjective::evaluateBlock<NeighborhoodSearchMethod::DIRECT1, false>;

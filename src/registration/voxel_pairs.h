@@ -15,6 +15,7 @@ struct Neighbour {
 
 template <NeighborhoodSearchMethod method>
 constexpr std::size_t kNeighbourCount = method == NeighborhoodSearchMethod::DIRECT1   ? 1
+                                        : method == NeighborhoodSearchMethod::DIRECT3 ? 3
                                         : method == NeighborhoodSearchMethod::DIRECT7 ? 7
                                                                                       : 27;
 
@@ -27,6 +28,7 @@ constexpr std::array<Neighbour, kNeighbourCount<method>> neighbours() {
       for (int x = -1; x <= 1; ++x) {
         const int distance = x * x + y * y + z * z;
         if (method == NeighborhoodSearchMethod::DIRECT1 && distance > 0) continue;
+        if (method == NeighborhoodSearchMethod::DIRECT3 && (x != 0 || y != 0)) continue;
         if (method == NeighborhoodSearchMethod::DIRECT7 && distance > 1) continue;
         result[count++] = {x, y, z};
       }

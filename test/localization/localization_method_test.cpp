@@ -46,7 +46,7 @@ TEST(LocalizationMethod, ThePapersMethodsHaveThePapersValues) {
     EXPECT_EQ(method.voxels.confidence.non_ground, 1.0);
     EXPECT_EQ(method.voxels.min_eigenvalue_ratio, 0.01);
     EXPECT_FALSE(method.voxels.unbounded_ground);
-    EXPECT_FALSE(method.ground_in_own_voxel);
+    EXPECT_FALSE(method.ground_in_own_column);
     EXPECT_EQ(method.voxels.sizes.finest_m, 1.0);
     EXPECT_EQ(method.voxels.sizes.coarsest_m, 0.0);
   }

@@ -79,8 +79,8 @@ TEST(NdtEvaluation, OnSeveralLevelsBothPrecisionsAgree) {
   const SourcePoints source = sourceOf(streetCorner(7, 2000));
   AlignmentOptions options;
   options.threads = 2;
-  for (const bool ground_in_own_voxel : {false, true}) {
-    options.ground_in_own_voxel = ground_in_own_voxel;
+  for (const bool ground_in_own_column : {false, true}) {
+    options.ground_in_own_column = ground_in_own_column;
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     T.translation() = Eigen::Vector3d(0.031, -0.017, 0.009);
     NdtEvaluation in_single, in_double;
@@ -98,7 +98,7 @@ TEST(NdtEvaluation, OnSeveralLevelsBothPrecisionsAgree) {
   }
 }
 
-TEST(NdtEvaluation, GroundInItsOwnVoxelIsTheSumOfBothSearches) {
+TEST(NdtEvaluation, GroundInItsOwnColumnIsTheSumOfBothSearches) {
   const NdtTarget target = exactTargetOf(streetCorner(1));
   const SourcePoints all = sourceOf(streetCorner(2, 1500));
   SourcePoints ground, rest;
@@ -110,15 +110,15 @@ TEST(NdtEvaluation, GroundInItsOwnVoxelIsTheSumOfBothSearches) {
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   AlignmentOptions options;
   options.arithmetic = Arithmetic::DOUBLE;
-  const auto evaluated = [&](const SourcePoints& source, NeighborhoodSearchMethod method, bool ground_in_own_voxel) {
+  const auto evaluated = [&](const SourcePoints& source, NeighborhoodSearchMethod method, bool ground_in_own_column) {
     options.neighborhood_search = method;
-    options.ground_in_own_voxel = ground_in_own_voxel;
+    options.ground_in_own_column = ground_in_own_column;
     NdtEvaluation evaluation;
     evaluation.begin(target, source, options);
     return evaluation.onMatchingLevels(T)(T);
   };
   const NdtDerivatives whole = evaluated(all, NeighborhoodSearchMethod::DIRECT7, true);
-  NdtDerivatives sum = evaluated(ground, NeighborhoodSearchMethod::DIRECT1, false);
+  NdtDerivatives sum = evaluated(ground, NeighborhoodSearchMethod::DIRECT3, false);
   sum += evaluated(rest, NeighborhoodSearchMethod::DIRECT7, false);
   EXPECT_EQ(whole.pair_count, sum.pair_count);
   EXPECT_NEAR(whole.score, sum.score, 1e-9 * sum.score);
@@ -129,9 +129,10 @@ TEST(NdtAligner, FindsPosesOnSeveralLevels) {
   const NdtTarget target = halfMappedTarget();
   const SourcePoints source = sourceOf(streetCorner(9, 2500));
   AlignmentOptions options;
-  options.ground_in_own_voxel = true;
+  options.ground_in_own_column = true;
   options.evaluate_likelihoods = true;
   std::mt19937 random(3);
+  AlignmentResult of_first_trial;
   for (int trial = 0; trial < 10; ++trial) {
     const Eigen::Isometry3d T_start = randomPose(random, 0.25, 0.02);
     AlignmentResult expected;
@@ -139,8 +140,12 @@ TEST(NdtAligner, FindsPosesOnSeveralLevels) {
       options.threads = threads;
       const AlignmentResult result = NdtAligner().align(target, source, T_start, options);
       EXPECT_TRUE(result.converged());
-      EXPECT_LT(result.T_map_source.translation().norm(), 0.01);
-      EXPECT_LT(rotationAngle(result.T_map_source.linear()), 0.002);
+      // Where the corner was met by one scan, voxels of 1 and 2 m hold ground and wall together: 1.7 cm of bias, the same
+      // from every start.
+      EXPECT_LT(result.T_map_source.translation().norm(), 0.025);
+      EXPECT_LT(rotationAngle(result.T_map_source.linear()), 0.006);
+      if (trial == 0 && threads == 1) of_first_trial = result;
+      EXPECT_LT((result.T_map_source.translation() - of_first_trial.T_map_source.translation()).norm(), 0.004);
       if (threads == 1) expected = result;
       EXPECT_TRUE(result.T_map_source.matrix() == expected.T_map_source.matrix()) << threads;
       EXPECT_EQ(result.likelihoods.unweighted, expected.likelihoods.unweighted);

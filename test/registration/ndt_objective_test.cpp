@@ -107,6 +107,7 @@ TEST_P(NdtObjectiveDerivatives, InEulerAnglesAgreeWithCentralDifferences) {
 INSTANTIATE_TEST_SUITE_P(
     EveryModeWithAndWithoutWeights, NdtObjectiveDerivatives,
     testing::Values(Case{NeighborhoodSearchMethod::DIRECT1, false}, Case{NeighborhoodSearchMethod::DIRECT1, true},
+                    Case{NeighborhoodSearchMethod::DIRECT3, false}, Case{NeighborhoodSearchMethod::DIRECT3, true},
                     Case{NeighborhoodSearchMethod::DIRECT7, false}, Case{NeighborhoodSearchMethod::DIRECT7, true},
                     Case{NeighborhoodSearchMethod::DIRECT26, false}, Case{NeighborhoodSearchMethod::DIRECT26, true},
                     Case{NeighborhoodSearchMethod::RADIUS, false}, Case{NeighborhoodSearchMethod::RADIUS, true}));
@@ -119,13 +120,14 @@ TEST(NdtObjective, EveryModeMeetsThePairsThatABruteForceSearchMeets) {
   const internal::NdtLevel& level = map.fine();
   const std::vector<VoxelCoordinate> voxels = level.index().voxels();
   const std::vector<Eigen::Vector3d> means = level.means();
-  std::size_t direct1 = 0, direct7 = 0, direct26 = 0, radius = 0;
+  std::size_t direct1 = 0, direct3 = 0, direct7 = 0, direct26 = 0, radius = 0;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const Eigen::Vector3d p = T * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
     const VoxelCoordinate voxel = p.array().floor().matrix().cast<int>();
     for (std::size_t v = 0; v < level.size(); ++v) {
       const VoxelCoordinate difference = (voxels[v] - voxel).cwiseAbs();
       direct1 += difference.maxCoeff() == 0;
+      direct3 += difference.sum() <= 1 && difference.z() == difference.sum();
       direct7 += difference.sum() <= 1;
       direct26 += difference.maxCoeff() <= 1;
       radius += (p - means[v]).norm() <= 1.0;
@@ -136,6 +138,7 @@ TEST(NdtObjective, EveryModeMeetsThePairsThatABruteForceSearchMeets) {
     return NdtObjective(level, method, {}, {}).evaluate(source, T, 1, workspace).pair_count;
   };
   EXPECT_EQ(pairs(NeighborhoodSearchMethod::DIRECT1), direct1);
+  EXPECT_EQ(pairs(NeighborhoodSearchMethod::DIRECT3), direct3);
   EXPECT_EQ(pairs(NeighborhoodSearchMethod::DIRECT7), direct7);
   EXPECT_EQ(pairs(NeighborhoodSearchMethod::DIRECT26), direct26);
   EXPECT_EQ(pairs(NeighborhoodSearchMethod::RADIUS), radius);

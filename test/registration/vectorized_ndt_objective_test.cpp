@@ -75,8 +75,9 @@ TEST_P(VectorizedNdtObjectiveModes, AgreesWithDoublePrecision) {
 std::vector<Case> allCases() {
   std::vector<Case> cases;
   for (const InstructionSet set : kInstructionSets) {
-    for (const auto method : {NeighborhoodSearchMethod::DIRECT1, NeighborhoodSearchMethod::DIRECT7,
-                              NeighborhoodSearchMethod::DIRECT26, NeighborhoodSearchMethod::RADIUS}) {
+    for (const auto method : {NeighborhoodSearchMethod::DIRECT1, NeighborhoodSearchMethod::DIRECT3,
+                              NeighborhoodSearchMethod::DIRECT7, NeighborhoodSearchMethod::DIRECT26,
+                              NeighborhoodSearchMethod::RADIUS}) {
       for (const bool weighted : {false, true}) cases.push_back({method, weighted, set});
     }
   }
@@ -84,7 +85,7 @@ std::vector<Case> allCases() {
 }
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
-  constexpr std::array<const char*, 4> kMethods = {"Radius", "Direct26", "Direct7", "Direct1"};
+  constexpr std::array<const char*, 5> kMethods = {"Radius", "Direct26", "Direct7", "Direct3", "Direct1"};
   return std::string(kMethods[static_cast<std::size_t>(info.param.method)]) +
          (info.param.weighted ? "Weighted" : "Unweighted") + "_" + toString(info.param.instruction_set);
 }

@@ -18,7 +18,7 @@ struct SAW_NDT_EXPORT LocalizationMethod {
   double mismatch_penalty = 0.1;        ///< lambda_m
   double outlier_ratio = 0.55;          ///< of Magnusson's score function, in (0, 1)
   double coarse_settled_voxels = 0.02;  ///< see AlignmentOptions::coarse_settled_voxels
-  bool ground_in_own_voxel = false;     ///< see AlignmentOptions::ground_in_own_voxel
+  bool ground_in_own_column = false;    ///< see AlignmentOptions::ground_in_own_column
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;

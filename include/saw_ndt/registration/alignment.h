@@ -12,6 +12,7 @@ enum class NeighborhoodSearchMethod {
   RADIUS,    ///< every voxel whose mean lies within one resolution of the point, as PCL
   DIRECT26,  ///< the point's own voxel and the 26 around it
   DIRECT7,   ///< the point's own voxel and the 6 that share a face with it
+  DIRECT3,   ///< the point's own voxel and those above and below it
   DIRECT1,   ///< the point's own voxel
 };
 
@@ -45,7 +46,8 @@ enum class Arithmetic {
 
 struct SAW_NDT_EXPORT AlignmentOptions {
   NeighborhoodSearchMethod neighborhood_search = NeighborhoodSearchMethod::DIRECT7;
-  bool ground_in_own_voxel = false;  ///< points labelled ground are paired with the voxel they lie in alone
+  /// Points labelled ground are paired by DIRECT3: voxels beside a point say nothing new of level ground.
+  bool ground_in_own_column = false;
   ScoreFunction score_function = ScoreFunction::MAGNUSSON;
   double outlier_ratio = 0.55;    ///< expected share of outliers, in (0, 1)
   bool use_weights = true;        ///< false, or a source or map without labels: classical NDT, W = 1
