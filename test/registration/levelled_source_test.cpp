@@ -140,12 +140,12 @@ TEST(NdtAligner, FindsPosesOnSeveralLevels) {
       options.threads = threads;
       const AlignmentResult result = NdtAligner().align(target, source, T_start, options);
       EXPECT_TRUE(result.converged());
-      // Where the corner was met by one scan, voxels of 1 and 2 m hold ground and wall together: 1.7 cm of bias, the same
-      // from every start.
+      // Where the corner was met by one scan, voxels of 1 and 2 m hold ground and wall together: 1.7 cm of bias, the
+      // same from every start.
       EXPECT_LT(result.T_map_source.translation().norm(), 0.025);
       EXPECT_LT(rotationAngle(result.T_map_source.linear()), 0.006);
       if (trial == 0 && threads == 1) of_first_trial = result;
-      EXPECT_LT((result.T_map_source.translation() - of_first_trial.T_map_source.translation()).norm(), 0.004);
+      EXPECT_LT((result.T_map_source.translation() - of_first_trial.T_map_source.translation()).norm(), 0.008);
       if (threads == 1) expected = result;
       EXPECT_TRUE(result.T_map_source.matrix() == expected.T_map_source.matrix()) << threads;
       EXPECT_EQ(result.likelihoods.unweighted, expected.likelihoods.unweighted);
