@@ -32,7 +32,7 @@ VoxelWeighting adaptiveVoxels() {
 const std::vector<LocalizationMethod>& methods() {
   const VoxelWeighting paper = voxelsOfOneMetre(ConfidenceOptions::paper());
   static const std::vector<LocalizationMethod> all = {
-      {"weighted", true, 0.5, true, adaptiveVoxels(), 0.5, 0.35, 0.2, true},
+      {"weighted", true, 0.5, true, adaptiveVoxels(), 0.5, 0.35, 0.06, true},
       {"weighted-s50", true, 0.5, true, paper, 0.1, 0.55, 0.02, false},
       {"weighted-s100", true, 1.0, true, paper, 0.1, 0.55, 0.02, false},
       {"unweighted-s50", true, 0.5, false, paper, 0.1, 0.55, 0.02, false},

@@ -43,8 +43,8 @@ void alignCoarsely(const NdtTarget& target, const AlignmentOptions& options, Ndt
 // again from where it was found, while that is far.
 void alignOnSeveralLevels(const NdtTarget& target, const AlignmentOptions& options, NdtEvaluation& evaluation,
                           AlignmentResult& result) {
-  constexpr int kMostRounds = 4;
-  constexpr double kNearVoxels = 0.1;
+  constexpr int kMostRounds = 8;
+  constexpr double kNearVoxels = 0.04;
   const StepLimits limits = limitsOf(target, options);
   for (int round = 0; round < kMostRounds; ++round) {
     const Eigen::Vector3d from = result.T_map_source.translation();
