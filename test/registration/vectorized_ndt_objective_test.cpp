@@ -75,9 +75,9 @@ TEST_P(VectorizedNdtObjectiveModes, AgreesWithDoublePrecision) {
 std::vector<Case> allCases() {
   std::vector<Case> cases;
   for (const InstructionSet set : kInstructionSets) {
-    for (const auto method : {NeighborhoodSearchMethod::DIRECT1, NeighborhoodSearchMethod::DIRECT3,
-                              NeighborhoodSearchMethod::DIRECT7, NeighborhoodSearchMethod::DIRECT26,
-                              NeighborhoodSearchMethod::RADIUS}) {
+    for (const auto method :
+         {NeighborhoodSearchMethod::DIRECT1, NeighborhoodSearchMethod::DIRECT3, NeighborhoodSearchMethod::DIRECT7,
+          NeighborhoodSearchMethod::DIRECT26, NeighborhoodSearchMethod::RADIUS}) {
       for (const bool weighted : {false, true}) cases.push_back({method, weighted, set});
     }
   }
