@@ -8,6 +8,8 @@ namespace {
 
 // Edge of the largest voxels in those of the map: the integers of their sums have room for 33 million points each.
 constexpr double kMostVoxels = 16.0;
+// Of the coarse ones: room for 8 million.
+constexpr int kMostCoarseVoxels = 32;
 
 int factorTo(double edge_m, double resolution_m) {
   return static_cast<int>(std::clamp(std::round(edge_m / resolution_m), 1.0, kMostVoxels));
@@ -32,7 +34,7 @@ TargetPlan planTarget(const MapOrigin& origin, const VoxelWeighting& weighting) 
     plan.levels.push_back(larger);
   }
   if (weighting.coarse_factor > 1) {
-    plan.coarse = level(plan.levels.front().factor * weighting.coarse_factor);
+    plan.coarse = level(std::min(plan.levels.front().factor * weighting.coarse_factor, kMostCoarseVoxels));
     // Far from a pose, planes without end would pull from everywhere.
     plan.coarse->unbounded_ground = false;
   }

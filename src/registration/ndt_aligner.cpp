@@ -45,8 +45,9 @@ void alignOnSeveralLevels(const NdtTarget& target, const AlignmentOptions& optio
                           AlignmentResult& result) {
   constexpr int kMostRounds = 8;
   constexpr double kNearVoxels = 0.04;
-  const StepLimits limits = limitsOf(target, options);
-  for (int round = 0; round < kMostRounds; ++round) {
+  StepLimits limits = limitsOf(target, options);
+  for (int round = 0; round < kMostRounds && result.iterations < options.max_iterations; ++round) {
+    limits.max_iterations = options.max_iterations - result.iterations;
     const Eigen::Vector3d from = result.T_map_source.translation();
     dampedNewton(evaluation.onMatchingLevels(result.T_map_source), limits, options.min_curvature_share, result);
     if ((result.T_map_source.translation() - from).norm() < kNearVoxels * target.resolution()) break;
