@@ -11,7 +11,7 @@
 namespace saw_ndt {
 
 struct DriveMapOptions {
-  /// Edge of a voxel: of the smallest that `weighted` can match; the paper's methods put eight together.
+  /// Edge of a voxel: of the smallest that `weighted` can match; the paper's methods put voxels of 1 m together.
   double resolution_m = 0.5;
   std::optional<SegmentationOptions> segmentation = SegmentationOptions();  ///< none: raw points without labels
   int threads = 0;  ///< 0: all cores; the map does not depend on it

@@ -36,7 +36,8 @@ struct SAW_NDT_EXPORT ConfidenceOptions {
 
 /// How large the voxels of a target are. Where `coarsest_m` is not greater than `finest_m`, all are of one size.
 /// Otherwise every place has the smallest voxels, each level twice as large as the one before, that its points bear:
-/// those of a level before the last are left to the next one unless they meet `min_scans` and `min_spread`.
+/// a voxel of any level but the last is left out unless it meets `min_scans`, one of any but the first unless it meets
+/// `min_spread`. What no level takes has no distribution.
 struct SAW_NDT_EXPORT VoxelSizes {
   double finest_m = 0.0;    ///< edge of the smallest (m), rounded to whole voxels of the map; 0: those of the map
   double coarsest_m = 0.0;  ///< edge that none exceeds (m), but for a map whose voxels do

@@ -46,7 +46,7 @@ class SAW_NDT_EXPORT WeightedVoxelMap {
   const std::vector<LabelledVoxelSums>& entries() const { return entries_; }
 
   /// The statistics of every voxel of the map that has a distribution, in map order. Here and below the sizes of voxels
-  /// that a weighting asks for are those of targets: the map's own are told.
+  /// that a weighting asks for, and unbounded ground, are those of targets: the map's own are told.
   /// @param threads  0: all cores; the result does not depend on it
   /// @throws std::invalid_argument where the weighting does not hold
   std::vector<VoxelStatistics> statistics(const VoxelWeighting& weighting = {}, int threads = 0) const;
