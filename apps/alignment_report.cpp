@@ -22,6 +22,13 @@ Json figuresOf(const AlignmentReport& report) {
   json["iterations"] = report.result.iterations;
   json["evaluations"] = report.result.evaluations;
   json["likelihood"] = report.result.likelihood;
+  json["overlap"] = report.result.overlap;
+  json["degenerate"] = freeAxes(report.result.free_directions, report.result.T_map_source.linear());
+  const Vector6d sigma = standardDeviations(report.result.covariance, report.result.T_map_source.linear());
+  for (int i = 0; i < 6; ++i) {
+    json["sigma_" + std::string(kPoseNames[static_cast<std::size_t>(i)])] =
+        i < 3 ? sigma[i] : degreesFromRadians(sigma[i]);
+  }
   if (report.fitness_m2) json["fitness_m2"] = *report.fitness_m2;
   json["weighted"] = report.weighted;
   json["source_points"] = report.source_points;

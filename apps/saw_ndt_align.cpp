@@ -16,7 +16,10 @@ constexpr char kDescription[] =
     "Registers SOURCE to TARGET and prints the transform that moves points of SOURCE onto TARGET. Where both are PCD "
     "files with a label field as saw_ndt_segment writes it, pairs are weighted by labels and structure; otherwise it "
     "is "
-    "classical NDT. An alignment that does not converge is a failure: nothing is printed or written.";
+    "classical NDT. An alignment that does not converge, or to which too few points fit (-min-overlap), is a failure: "
+    "nothing is printed or written. Beside the transform are printed the share of SOURCE that fits (overlap), what "
+    "nothing holds (degenerate) and standard deviations, along and about the axes of SOURCE, about its origin or, "
+    "where that is more than 100 m away, its middle.";
 
 struct Arguments {
   std::string source_file, target_file, output_file;
@@ -29,6 +32,7 @@ struct Arguments {
   std::string optimizer = "damped-newton";
   int max_iterations = saw_ndt::AlignmentOptions().max_iterations;
   double source_voxel_m = 0.0;
+  double min_overlap = saw_ndt::AlignmentOptions().min_overlap;
   int threads = 0;
 };
 
@@ -91,6 +95,9 @@ void align(const Arguments& arguments) {
   }
   ndt.setMaximumIterations(arguments.max_iterations);
   ndt.setNumberOfThreads(static_cast<unsigned int>(arguments.threads));
+  saw_ndt::AlignmentOptions options = ndt.getAlignmentOptions();
+  options.min_overlap = arguments.min_overlap;
+  ndt.setAlignmentOptions(options);
   ndt.setInputTarget(target);
   ndt.setInputSource(thinned<PointT>(source, arguments.source_voxel_m));
   pcl::PointCloud<PointT> moved;
@@ -100,7 +107,8 @@ void align(const Arguments& arguments) {
   if (!ndt.hasConverged()) {
     throw saw_ndt::Error(arguments.source_file, "",
                          "could not be aligned to " + arguments.target_file + ": " + saw_ndt::toString(result.status) +
-                             " after " + std::to_string(result.iterations) + " iterations");
+                             " after " + std::to_string(result.iterations) + " iterations, overlap " +
+                             std::to_string(result.overlap));
   }
   saw_ndt::AlignmentReport report;
   report.result = result;
@@ -132,6 +140,8 @@ int main(int argc, char** argv) {
   app.addOption("max-iterations", &arguments.max_iterations, "N", "steps at most");
   app.addOption("source-voxel", &arguments.source_voxel_m, "METRES",
                 "thin SOURCE to a centroid a voxel of this edge before it is aligned, 0 for none");
+  app.addOption("min-overlap", &arguments.min_overlap, "SHARE",
+                "with less of SOURCE beside the ground on surfaces of TARGET there is no answer");
   app.addFlag("classical", &arguments.classical, "ignore labels");
   app.addFlag("fitness", &arguments.with_fitness,
               "also tell the mean squared distance (m^2) of the aligned points to their nearest ones in TARGET");
@@ -143,6 +153,8 @@ int main(int argc, char** argv) {
       saw_ndt::checkOption(arguments.resolution_m > 0.0, "resolution", arguments.resolution_m, "positive");
       saw_ndt::checkOption(arguments.max_iterations >= 1, "max-iterations", arguments.max_iterations, "1 or more");
       saw_ndt::checkOption(arguments.source_voxel_m >= 0.0, "source-voxel", arguments.source_voxel_m, "0 or more");
+      saw_ndt::checkOption(arguments.min_overlap >= 0.0 && arguments.min_overlap <= 1.0, "min-overlap",
+                           arguments.min_overlap, "between 0 and 1");
     });
     const bool labelled = !arguments.classical && hasLabels(arguments.source_file) && hasLabels(arguments.target_file);
     labelled ? align<pcl::PointXYZL>(arguments) : align<pcl::PointXYZ>(arguments);

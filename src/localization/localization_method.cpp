@@ -32,11 +32,11 @@ VoxelWeighting adaptiveVoxels() {
 const std::vector<LocalizationMethod>& methods() {
   const VoxelWeighting paper = voxelsOfOneMetre(ConfidenceOptions::paper());
   static const std::vector<LocalizationMethod> all = {
-      {"weighted", true, 0.5, true, adaptiveVoxels(), 0.5, 0.35, 0.06, true},
-      {"weighted-s50", true, 0.5, true, paper, 0.1, 0.55, 0.02, false},
-      {"weighted-s100", true, 1.0, true, paper, 0.1, 0.55, 0.02, false},
-      {"unweighted-s50", true, 0.5, false, paper, 0.1, 0.55, 0.02, false},
-      {"classical", false, 1.0, false, voxelsOfOneMetre(ConfidenceOptions::uniform()), 0.1, 0.55, 0.02, false},
+      {"weighted", true, 0.5, true, adaptiveVoxels(), 0.5, 0.35, 0.06, true, 1.0},
+      {"weighted-s50", true, 0.5, true, paper, 0.1, 0.55, 0.02, false, 4.0},
+      {"weighted-s100", true, 1.0, true, paper, 0.1, 0.55, 0.02, false, 4.0},
+      {"unweighted-s50", true, 0.5, false, paper, 0.1, 0.55, 0.02, false, 4.0},
+      {"classical", false, 1.0, false, voxelsOfOneMetre(ConfidenceOptions::uniform()), 0.1, 0.55, 0.02, false, 4.0},
   };
   return all;
 }
@@ -49,6 +49,7 @@ void LocalizationMethod::check() const {
               "between 0 and 1");
   checkOption(outlier_ratio > 0.0 && outlier_ratio < 1.0, "outlier_ratio", outlier_ratio, "between 0 and 1, exclusive");
   checkOption(coarse_settled_voxels > 0.0, "coarse_settled_voxels", coarse_settled_voxels, "positive");
+  checkOption(covariance_scale > 0.0, "covariance_scale", covariance_scale, "positive");
   voxels.check();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -75,7 +76,9 @@ std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, s
   const auto read = [&](std::size_t place, std::size_t i) {
     const float* const point = first + i * stride;
     __builtin_prefetch(point + kPointsAhead * stride);
-    block.x[place] = point[0];
+    // Drivers write the origin for "no return".
+    const bool is_return = point[0] != 0.0F || point[1] != 0.0F || point[2] != 0.0F;
+    block.x[place] = is_return ? point[0] : std::numeric_limits<float>::quiet_NaN();
     block.y[place] = point[1];
     block.z[place] = point[2];
   };
@@ -107,7 +110,7 @@ std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, s
 void SourceVoxelFilter::addPoints(std::size_t count) {
   const SourceVoxelBlock& block = *block_;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!std::isfinite(block.x[i]) || !std::isfinite(block.y[i]) || !std::isfinite(block.z[i])) continue;
+    if (!isWithinReach(block.x[i], block.y[i], block.z[i])) continue;
     points_.add(block.x[i], block.y[i], block.z[i], static_cast<StructuralLabel>(block.label[i]));
   }
 }

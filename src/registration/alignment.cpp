@@ -1,5 +1,6 @@
 #include "saw_ndt/registration/alignment.h"
 
+#include <array>
 #include <cmath>
 
 #include "saw_ndt/common/error.h"
@@ -23,6 +24,8 @@ void AlignmentOptions::check() const {
   checkOption(positive(line_search_max_step), "line_search_max_step", line_search_max_step, "positive");
   checkOption(line_search_min_step >= 0.0 && std::isfinite(line_search_min_step), "line_search_min_step",
               line_search_min_step, "0 or more");
+  checkOption(min_overlap >= 0.0 && min_overlap <= 1.0, "min_overlap", min_overlap, "between 0 and 1");
+  checkOption(positive(covariance_scale), "covariance_scale", covariance_scale, "positive");
   checkOption(threads >= 0, "threads", threads, "0 or more");
 }
 
@@ -38,8 +41,39 @@ const char* toString(AlignmentStatus status) {
       return "no source";
     case AlignmentStatus::NO_TARGET:
       return "no target";
+    case AlignmentStatus::UNDETERMINED:
+      return "too few points fit the target";
   }
   return "unknown";
+}
+
+namespace {
+
+// From the axes of the map to those of the base.
+Matrix6d inBase(const Matrix6d& in_map, const Eigen::Matrix3d& R_map_base) {
+  Matrix6d R = Matrix6d::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = R_map_base.transpose();
+  return R * in_map * R.transpose();
+}
+
+}  // namespace
+
+std::string freeAxes(const PoseDirections& free_directions, const Eigen::Matrix3d& R_map_base) {
+  // A direction half way between two axes names both.
+  constexpr double kNamedShare = 0.25;
+  constexpr std::array<const char*, 6> kNames{"x", "y", "z", "roll", "pitch", "yaw"};
+  const Vector6d share = inBase(free_directions * free_directions.transpose(), R_map_base).diagonal();
+  std::string names;
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    if (share[static_cast<Eigen::Index>(k)] < kNamedShare) continue;
+    if (!names.empty()) names += ' ';
+    names += kNames[k];
+  }
+  return names;
+}
+
+Vector6d standardDeviations(const Matrix6d& covariance, const Eigen::Matrix3d& R_map_base) {
+  return inBase(covariance, R_map_base).diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
 }  // namespace saw_ndt

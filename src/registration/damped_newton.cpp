@@ -16,6 +16,9 @@ constexpr double kRidge = 1e-9;
 // vanish at the faces of voxels, the score has edges on which no step, however short, ends at a slope of zero.
 constexpr double kNegligibleGain = 1e-8;
 
+// At the iteration limit a step of so many epsilons counts as converged.
+constexpr double kNearlyConverged = 10.0;
+
 Matrix6d ridged(const Matrix6d& curvature) {
   Matrix6d result = curvature;
   const double translation = curvature.diagonal().head<3>().mean();
@@ -57,10 +60,12 @@ void dampedNewton(const Evaluation& evaluate, const StepLimits& limits, double m
   };
   if (at_best.pair_count == 0) return finish(AlignmentStatus::NO_OVERLAP);
 
+  const auto within_epsilons = [&](const Vector6d& step, double factor) {
+    return step.head<3>().norm() < factor * limits.translation_epsilon_m &&
+           step.tail<3>().norm() < factor * limits.rotation_epsilon_rad;
+  };
   const auto is_small = [&](const Vector6d& step) {
-    return (step.head<3>().norm() < limits.translation_epsilon_m &&
-            step.tail<3>().norm() < limits.rotation_epsilon_rad) ||
-           at_best.gradient().dot(step) < kNegligibleGain * at_best.score;
+    return within_epsilons(step, 1.0) || at_best.gradient().dot(step) < kNegligibleGain * at_best.score;
   };
   Vector6d step = newtonStep(at_best, min_curvature_share);
   for (int iteration = 0; iteration < limits.max_iterations; ++iteration) {
@@ -85,7 +90,8 @@ void dampedNewton(const Evaluation& evaluate, const StepLimits& limits, double m
     }
     result.T_map_source = best;
   }
-  finish(AlignmentStatus::ITERATION_LIMIT);
+  // Steps of millimetres to and fro about an optimum are not those of metres on the way to one.
+  finish(within_epsilons(step, kNearlyConverged) ? AlignmentStatus::CONVERGED : AlignmentStatus::ITERATION_LIMIT);
 }
 
 }  // namespace saw_ndt::internal

@@ -1,9 +1,12 @@
 #include "saw_ndt/registration/ndt_aligner.h"
 
+#include <algorithm>
 #include <stdexcept>
+#include <vector>
 
 #include "common/executor.h"
 #include "map/ndt_level.h"
+#include "registration/alignment_assessment.h"
 #include "registration/ndt_evaluation.h"
 #include "registration/optimizers.h"
 
@@ -54,10 +57,57 @@ void alignOnSeveralLevels(const NdtTarget& target, const AlignmentOptions& optio
   }
 }
 
+// A source whose middle is farther than this from its origin is moved: single precision would lose what is small beside
+// that distance, and a step of the rotation would throw the points far off (m).
+constexpr double kFarMiddle_m = 100.0;
+
+// The middle of the points, to be taken as their origin, or the origin that they have.
+Eigen::Vector3d rotationCentre(const SourcePoints& source) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < source.size(); ++i) sum += Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
+  const Eigen::Vector3d middle = sum / static_cast<double>(source.size());
+  return middle.norm() > kFarMiddle_m ? middle : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+void moveTo(const Eigen::Vector3d& origin, const SourcePoints& source, SourcePoints& moved) {
+  moved.label = source.label;
+  moved.labelled = source.labelled;
+  const auto move = [](const std::vector<float>& from, double by, std::vector<float>& to) {
+    to.resize(from.size());
+    std::transform(from.begin(), from.end(), to.begin(), [by](float value) { return static_cast<float>(value - by); });
+  };
+  move(source.x, origin.x(), moved.x);
+  move(source.y, origin.y(), moved.y);
+  move(source.z, origin.z(), moved.z);
+}
+
+// Of points that lie around their origin.
+void alignNear(const NdtTarget& target, const SourcePoints& source, const AlignmentOptions& options,
+               NdtEvaluation& evaluation, AlignmentResult& result) {
+  evaluation.begin(target, source, options);
+  const bool damped_newton = options.optimizer == Optimizer::DAMPED_NEWTON;
+  if (damped_newton && options.use_coarse_level && !target.coarse().empty()) {
+    alignCoarsely(target, options, evaluation, result);
+  }
+  const StepLimits limits = limitsOf(target, options);
+  if (!damped_newton) {
+    newtonMoreThuente(evaluation.onMatchingLevels(result.T_map_source), limits, options.line_search_min_step,
+                      options.line_search_max_step, result);
+  } else if (target.levels().size() > 1) {
+    alignOnSeveralLevels(target, options, evaluation, result);
+  } else {
+    dampedNewton(evaluation.onMatchingLevels(result.T_map_source), limits, options.min_curvature_share, result);
+  }
+  result.likelihood = result.score / static_cast<double>(source.size());
+  if (options.evaluate_likelihoods) result.likelihoods = evaluation.likelihoods(result.T_map_source);
+  assessAlignment(target, source, options, result);
+}
+
 }  // namespace
 
 struct NdtAligner::Scratch {
   NdtEvaluation evaluation;
+  SourcePoints moved_source;
 };
 
 NdtAligner::NdtAligner() : scratch_(std::make_unique<Scratch>()) {}
@@ -72,26 +122,19 @@ AlignmentResult NdtAligner::align(const NdtTarget& target, const SourcePoints& s
   AlignmentResult result;
   result.T_map_source = guess;
   result.status = target.empty() ? AlignmentStatus::NO_TARGET : AlignmentStatus::NO_SOURCE;
+  result.overlap = 0.0;
   if (target.empty() || source.empty()) return result;
 
   const internal::HelperSession session(options.threads);
-  NdtEvaluation& evaluation = scratch_->evaluation;
-  evaluation.begin(target, source, options);
-  const bool damped_newton = options.optimizer == Optimizer::DAMPED_NEWTON;
-  if (damped_newton && options.use_coarse_level && !target.coarse().empty()) {
-    alignCoarsely(target, options, evaluation, result);
+  if (options.optimizer == Optimizer::DAMPED_NEWTON) result.rotation_centre = rotationCentre(source);
+  if (result.rotation_centre.isZero()) {
+    alignNear(target, source, options, scratch_->evaluation, result);
+    return result;
   }
-  const StepLimits limits = limitsOf(target, options);
-  if (!damped_newton) {
-    newtonMoreThuente(evaluation.onMatchingLevels(guess), limits, options.line_search_min_step,
-                      options.line_search_max_step, result);
-  } else if (target.levels().size() > 1) {
-    alignOnSeveralLevels(target, options, evaluation, result);
-  } else {
-    dampedNewton(evaluation.onMatchingLevels(result.T_map_source), limits, options.min_curvature_share, result);
-  }
-  result.likelihood = result.score / static_cast<double>(source.size());
-  if (options.evaluate_likelihoods) result.likelihoods = evaluation.likelihoods(result.T_map_source);
+  moveTo(result.rotation_centre, source, scratch_->moved_source);
+  result.T_map_source = guess * Eigen::Translation3d(result.rotation_centre);
+  alignNear(target, scratch_->moved_source, options, scratch_->evaluation, result);
+  result.T_map_source = result.T_map_source * Eigen::Translation3d(-result.rotation_centre);
   return result;
 }
 

@@ -52,6 +52,10 @@ void newtonMoreThuente(const Evaluation& evaluate, const StepLimits& limits, dou
       result.status = AlignmentStatus::CONVERGED;
     }
   }
+  if (!pose.allFinite()) {
+    result.status = AlignmentStatus::UNDETERMINED;
+    return;
+  }
   result.T_map_source = transformOf(pose);
   result.score = at.score;
   result.information = derivatives.curvature;

@@ -47,7 +47,8 @@ void writeFrames(const std::filesystem::path& path, const DriveLocalization& run
   std::ostream& out = output.stream();
   out << "scan,stamp,accepted,reason,converged,iterations,likelihood,correction_m,correction_deg,source_points,"
          "segment_ms,filter_ms,align_ms,total_ms,file,state,evaluations,unweighted_likelihood,non_ground_likelihood,"
-         "nearest_voxel_likelihood\n";
+         "nearest_voxel_likelihood,degenerate,overlap,sigma_x_m,sigma_y_m,sigma_z_m,sigma_roll_deg,sigma_pitch_deg,"
+         "sigma_yaw_deg\n";
   out << std::fixed;
   for (std::size_t i = 0; i < run.results.size(); ++i) {
     const LocalizationResult& r = run.results[i];
@@ -58,7 +59,11 @@ void writeFrames(const std::filesystem::path& path, const DriveLocalization& run
         << r.times.segment_ms << ',' << r.times.filter_ms << ',' << r.times.align_ms << ',' << r.times.total_ms << ','
         << csvField(run.names[i]) << ',' << toString(r.track.status) << ',' << r.alignment.evaluations << ','
         << std::setprecision(6) << r.alignment.likelihoods.unweighted << ',' << r.alignment.likelihoods.non_ground
-        << ',' << r.alignment.likelihoods.nearest_voxel << '\n';
+        << ',' << r.alignment.likelihoods.nearest_voxel << ',' << freeAxes(r.free_directions, r.T_map_base.linear())
+        << ',' << r.alignment.overlap;
+    const Vector6d sigma = standardDeviations(r.covariance, r.T_map_base.linear());
+    for (int k = 0; k < 6; ++k) out << ',' << (k < 3 ? sigma[k] : degreesFromRadians(sigma[k]));
+    out << '\n';
   }
   output.commit();
 }

@@ -20,6 +20,8 @@ struct SAW_NDT_EXPORT LocalizationMethod {
   double coarse_settled_voxels = 0.02;  ///< see AlignmentOptions::coarse_settled_voxels
   bool ground_in_own_column = false;    ///< see AlignmentOptions::ground_in_own_column
 
+  double covariance_scale = 4.0;  ///< see AlignmentOptions::covariance_scale
+
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "saw_ndt/common/export.h"
@@ -43,11 +44,14 @@ struct LocalizationResult {
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();  ///< the prediction where the scan was rejected
   Acceptance acceptance = Acceptance::NOT_CONVERGED;
   Eigen::Isometry3d T_map_base_predicted = Eigen::Isometry3d::Identity();
-  AlignmentResult alignment;  ///< with likelihoods
-  /// Inverse of the curvature of the score by (translation, rotation), see AlignmentResult::information: which
-  /// directions are well held and which are not. Relative, not calibrated; zero where the scan was rejected or the
-  /// curvature is singular.
+  /// With likelihoods. T_map_base is its pose, but for free_directions, along which it is the predicted one.
+  AlignmentResult alignment;
+  /// Of T_map_base, by (translation, rotation) in the axes of the map, about the base's origin: that of the alignment;
+  /// along free directions, and where the scan was rejected, that of the prediction. Errors of successive scans are
+  /// alike, since they are the map's: a filter that fuses poses must not take them for independent (docs/trust.md).
   Matrix6d covariance = Matrix6d::Zero();
+  /// Along which the scan does not hold the pose, as AlignmentResult::free_directions; none where it was rejected.
+  PoseDirections free_directions = PoseDirections(6, 0);
   PoseCorrection correction;  ///< of the prediction by registration
   std::size_t source_points = 0;
   StageTimes times;
@@ -61,7 +65,8 @@ using SourceAligner =
     std::function<AlignmentResult(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted)>;
 
 /// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. It prepares the scan (ScanPreparation),
-/// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). Scratch memory is kept from scan
+/// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). A scan that is rejected is tried
+/// again from the last pose; one in doubt is compared with rival poses around. Scratch memory is kept from scan
 /// to scan. One object for each vehicle, not to be shared by threads; the map may be.
 class SAW_NDT_EXPORT Localizer {
  public:
@@ -96,7 +101,14 @@ class SAW_NDT_EXPORT Localizer {
   LocalizerOptions options_;
   ScanPreparation preparation_;
   MotionPrediction prediction_;
+  struct Attempt;
+  Attempt attempt(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
+                  const PoseExpectation& expectation);
+  Attempt withoutRivals(const SourcePoints& source, const Attempt& found, const PoseExpectation& expectation);
+  Attempt find(const SourcePoints& source, const PoseExpectation& expectation);
+
   SourceAligner aligner_;
+  std::optional<NdtTarget> target_;  // where it is this library's aligner
   PoseJudge judge_;
 };
 

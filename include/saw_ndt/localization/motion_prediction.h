@@ -2,20 +2,39 @@
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/localization/track_state.h"
+#include "saw_ndt/registration/alignment.h"
 
 namespace saw_ndt {
 
 struct SAW_NDT_EXPORT MotionPredictionOptions {
   double max_speed_mps = 60.0;       ///< a predicted speed is cut to this (m/s)
   double max_turn_rate_radps = 1.5;  ///< a predicted turn rate is cut to this (rad/s)
+  /// What a vehicle does that a constant velocity does not foresee, one sigma: accelerations (m/s^2) that last.
+  double acceleration_sigma_mps2 = 3.0;
+  double turn_acceleration_sigma_radps2 = 0.5;  ///< the same of turns (rad/s^2)
+  double initial_sigma_m = 20.0;                ///< of the position of an initial pose (m)
+  double initial_sigma_deg = 30.0;              ///< of its rotation (degrees)
+  double max_extrapolation_s = 10.0;            ///< a motion is not extrapolated for longer (s)
+  int lost_after_scans = 3;                     ///< rejected one after the other, 1 or more
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
 };
 
+/// A pose that has been found, and how sure it is.
+struct MeasuredPose {
+  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();                 ///< as AlignmentResult::covariance
+  PoseDirections free_directions = PoseDirections(6, 0);  ///< as AlignmentResult::free_directions
+  bool learn_velocity = true;                             ///< false: the motion that led here is not to be believed
+  std::optional<double> overlap = {};                     ///< AlignmentResult::overlap, where it is known
+};
+
 /// Follows the track of a vehicle: predicts its next pose from the last two accepted ones and their stamps (Section
 /// III.C of the paper), by constant velocity and turn rate in the vehicle's own frame, a circle where it turns, both
-/// bounded. Before there are two, the last pose.
+/// bounded. Before there are two, the last pose. Beside the pose it carries the covariance of pose and velocity, that
+/// of just this estimator: free directions keep the prediction and its growing uncertainty, and an acceleration of
+/// unknown size is reckoned with but not estimated (a "consider" state).
 class SAW_NDT_EXPORT MotionPrediction {
  public:
   explicit MotionPrediction(const MotionPredictionOptions& options = {});
@@ -23,21 +42,42 @@ class SAW_NDT_EXPORT MotionPrediction {
   /// Forgets all poses and starts from one whose stamp is not known.
   /// @throws std::invalid_argument unless it is a finite rigid transform
   void reset(const Eigen::Isometry3d& T_map_base);
-  /// Adds an accepted pose. Stamps (s) that do not grow leave the velocity unknown.
+  /// Adds an accepted pose. One whose stamp (s) is not after the last adds nothing, unless it is more than a second
+  /// before it: then the clock was set back.
   /// @throws std::invalid_argument for what is not finite
-  void accept(const Eigen::Isometry3d& T_map_base, double stamp_s);
+  void accept(const MeasuredPose& pose, double stamp_s);
+  /// The same of a pose that is exact.
+  void accept(const Eigen::Isometry3d& T_map_base, double stamp_s) { accept(MeasuredPose{T_map_base}, stamp_s); }
   /// A scan was rejected: nothing new is known.
   void reject();
 
-  /// The pose expected at a stamp.
+  /// The pose expected at a stamp, which may be up to a second before the last.
   /// @throws std::invalid_argument for a stamp that is not finite, std::logic_error before reset() or accept()
   Eigen::Isometry3d predict(double stamp_s) const;
+  /// Its covariance, as AlignmentResult::covariance. @throws as predict()
+  Matrix6d predictedCovariance(double stamp_s) const;
 
   const TrackState& state() const { return state_; }
 
  private:
+  /// Errors of the pose, of velocity and turn rate, and of the accelerations, in the axes of the map.
+  using Covariance = Eigen::Matrix<double, 18, 18>;
+
+  double elapsed(double stamp_s) const;
+  Covariance propagated(double elapsed_s) const;
+
   MotionPredictionOptions options_;
   TrackState state_;
+  Covariance covariance_ = Covariance::Zero();
 };
+
+/// An aligned pose with what it does not tell taken from the predicted one: free directions keep the prediction
+/// (solution remapping, Zhang, Kaess and Singh 2016).
+SAW_NDT_EXPORT Eigen::Isometry3d keptAlongFreeDirections(const Eigen::Isometry3d& T_map_predicted,
+                                                         const Eigen::Isometry3d& T_map_aligned,
+                                                         const PoseDirections& free_directions);
+
+/// The error of a pose by (translation, rotation), in the axes of the map: it turns and moves `from` to `to`.
+SAW_NDT_EXPORT Vector6d poseDifference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
 }  // namespace saw_ndt

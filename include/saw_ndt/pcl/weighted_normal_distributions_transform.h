@@ -18,11 +18,15 @@ namespace saw_ndt {
 /// Where it differs from pcl::NormalDistributionsTransform 1.13 on purpose:
 ///  - the default optimizer is DAMPED_NEWTON with a coarse level first; setOptimizer(NEWTON_MORE_THUENTE) gives PCL's;
 ///  - the default neighbours are DIRECT7; setNeighborhoodSearchMethod(RADIUS) gives PCL's;
-///  - hasConverged() is false at the iteration limit, without overlap, without a target or a finite source point;
+///  - hasConverged() is false at the iteration limit, without a target or a finite source point, and where no or too
+///  few
+///    points of the source fit the target (AlignmentOptions::min_overlap); getAlignmentResult() tells why, and has the
+///    covariance, the overlap, and the directions that nothing holds;
+///  - the result does not depend on where the origins are: a source far from its own is turned about its middle;
 ///  - DAMPED_NEWTON reads the translation epsilon in metres and the rotation epsilon as a cosine, and stops at the
 ///    smaller of it and 1 mm, or 0.05 mrad: PCL's default of 0.1 would stop it centimetres short.
 ///    NEWTON_MORE_THUENTE reads them as PCL does: squared metres and a cosine, an epsilon <= 0 switched off;
-///  - setIndices() is honoured; points that are not finite are passed over, in source and target;
+///  - setIndices() is honoured; points that are not finite, or 1e9 m away, are passed over, in source and target;
 ///  - setResolution() and setMinPointPerVoxel() take effect at once, in whatever order calls come;
 ///  - an empty target or source replaces the one before it; aligning then fails instead of using the old one;
 ///  - the target may lie anywhere: no bound on the extent of its voxel grid;
@@ -43,6 +47,9 @@ class SAW_NDT_EXPORT WeightedNormalDistributionsTransform : public pcl::Registra
   using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
 
   WeightedNormalDistributionsTransform();
+  /// A copy shares target and source, which do not change, but no k-d tree.
+  WeightedNormalDistributionsTransform(const WeightedNormalDistributionsTransform& other);
+  WeightedNormalDistributionsTransform& operator=(const WeightedNormalDistributionsTransform& other);
 
   /// Builds the voxels of a target cloud at once; an empty cloud leaves no target.
   /// @throws std::invalid_argument where a `label` field holds what is no StructuralLabel
@@ -94,7 +101,7 @@ class SAW_NDT_EXPORT WeightedNormalDistributionsTransform : public pcl::Registra
   /// PCL's name before 1.12 of getTransformationLikelihood().
   double getTransformationProbability() const { return result_.likelihood; }
   int getFinalNumIteration() const { return this->nr_iterations_; }
-  /// Pose, status, evaluations, score and curvature of the last alignment.
+  /// Pose, status, evaluations, score, overlap, covariance and free directions of the last alignment.
   const AlignmentResult& getAlignmentResult() const { return result_; }
 
   /// The transform of [x y z roll pitch yaw] (m, rad), R = Rx Ry Rz.
@@ -105,6 +112,7 @@ class SAW_NDT_EXPORT WeightedNormalDistributionsTransform : public pcl::Registra
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
  private:
+  void copyFrom(const WeightedNormalDistributionsTransform& other);
   void buildTarget(const PointCloudTarget& cloud);
   void rebuildTarget();
   SourcePoints selectedSource() const;

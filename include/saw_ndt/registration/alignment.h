@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
+#include <string>
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/common/geometry.h"
@@ -73,6 +75,10 @@ struct SAW_NDT_EXPORT AlignmentOptions {
   double line_search_min_step = 1e-6;  ///< NEWTON_MORE_THUENTE: shortest step; not above the epsilons
 
   bool evaluate_likelihoods = false;  ///< fill AlignmentResult::likelihoods, which costs a fraction of an evaluation
+  double min_overlap = 0.3;           ///< with less of AlignmentResult::overlap an alignment is UNDETERMINED
+  /// Factor of AlignmentResult::covariance. 4 fits voxels of 1 m and pairs that all weigh 1; LocalizationMethod has
+  /// that of each method.
+  double covariance_scale = 4.0;
 
   int threads = 0;  ///< 0: all cores
 
@@ -82,14 +88,25 @@ struct SAW_NDT_EXPORT AlignmentOptions {
 
 enum class AlignmentStatus {
   CONVERGED,
-  ITERATION_LIMIT,  ///< the last step was still longer than the epsilons
+  ITERATION_LIMIT,  ///< the last step was still longer than ten times the epsilons
   NO_OVERLAP,       ///< no source point met a voxel
   NO_SOURCE,        ///< there is no finite source point
   NO_TARGET,        ///< the map has no voxel with a distribution
+  UNDETERMINED,     ///< the pose rests on too few points, or too few of them fit the map
 };
+
+/// The standard deviation of AlignmentResult::covariance along a free direction (m; with kRotationArm_m for rotations).
+constexpr double kFreeSigma_m = 20.0;
 
 /// The status in words: "converged", "iteration limit", ...
 SAW_NDT_EXPORT const char* toString(AlignmentStatus status);
+
+/// In PoseDirections a rotation counts as the way of a point this far from its centre (m).
+constexpr double kRotationArm_m = 10.0;
+
+/// Directions of a pose, one a column: translation (m) and rotation (rad) times kRotationArm_m, in the axes of the map.
+/// Orthonormal.
+using PoseDirections = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
 
 struct AlignmentResult {
   Eigen::Isometry3d T_map_source = Eigen::Isometry3d::Identity();
@@ -100,10 +117,34 @@ struct AlignmentResult {
   double likelihood = 0.0;  ///< score / number of source points, as PCL; it changes with the weights
   /// Of the final pose, where AlignmentOptions::evaluate_likelihoods asks for them; with PCL's outlier ratio.
   Likelihoods likelihoods;
-  /// Curvature of the score by (v, w), see NdtDerivatives; what the step was solved with, positive semidefinite.
+
+  // What follows is by (v, w): points turn by exp(w) about the rotation centre and move by v (m), in the map's axes.
+
+  /// The rotation centre in the frame of the source (m): its origin or, where the points lie more than 100 m away from
+  /// it, their middle. So the result does not depend on where the origins of source and map are.
+  Eigen::Vector3d rotation_centre = Eigen::Vector3d::Zero();
+  /// Curvature of the score, what the step was solved with; positive semidefinite.
   Matrix6d information = Matrix6d::Zero();
+  /// Of the pose. The inverse of the curvature, without what points tell of directions nearly parallel to the surface
+  /// that they lie on (that is the noise of its normal), and scaled so that it holds on simulated drives with exact
+  /// poses; see docs/trust.md. Errors are those of the map mainly: those of successive scans are alike, and more points
+  /// of a scan make them no smaller. Standard deviation along a free direction: kFreeSigma_m or more.
+  Matrix6d covariance = Matrix6d::Zero();
+  /// What the surroundings do not hold, such as the way along a tunnel. The pose keeps there what the guess said, or
+  /// comes to a chance optimum near it.
+  PoseDirections free_directions = PoseDirections(6, 0);
+  /// Share of a sample of the points not labelled ground that lie on a surface of the map, within three standard
+  /// deviations. Where no labels are known, points on level surfaces of the map count as ground. 0 to 1; not a number
+  /// where it was not told.
+  double overlap = std::numeric_limits<double>::quiet_NaN();
 
   bool converged() const { return status == AlignmentStatus::CONVERGED; }
 };
+
+/// The axes of the base along which a pose is free, in words such as "x yaw" (x y z roll pitch yaw); empty for none.
+SAW_NDT_EXPORT std::string freeAxes(const PoseDirections& free_directions, const Eigen::Matrix3d& R_map_base);
+
+/// Standard deviations along and about the axes of the base: x y z (m), roll pitch yaw (rad).
+SAW_NDT_EXPORT Vector6d standardDeviations(const Matrix6d& covariance, const Eigen::Matrix3d& R_map_base);
 
 }  // namespace saw_ndt

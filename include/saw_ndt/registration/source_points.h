@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -7,6 +8,13 @@
 #include "saw_ndt/common/labels.h"
 
 namespace saw_ndt {
+
+/// Whether a point can be registered: finite, and no farther than 1e9 m away along any axis. What is farther is no
+/// measurement, and its square overflows single precision.
+inline bool isWithinReach(float x, float y, float z) {
+  constexpr float kFarthest_m = 1.0e9F;
+  return std::abs(x) <= kFarthest_m && std::abs(y) <= kFarthest_m && std::abs(z) <= kFarthest_m;
+}
 
 /// The finite points that are to be registered, one array a coordinate (m, source frame), and their labels.
 struct SourcePoints {

@@ -25,6 +25,36 @@ WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::Weighted
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
+WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::WeightedNormalDistributionsTransform(
+    const WeightedNormalDistributionsTransform& other)
+    : Base(other) {
+  copyFrom(other);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>&
+WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::operator=(
+    const WeightedNormalDistributionsTransform& other) {
+  Base::operator=(other);
+  copyFrom(other);
+  return *this;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::copyFrom(
+    const WeightedNormalDistributionsTransform& other) {
+  options_ = other.options_;
+  weighting_ = other.weighting_;
+  resolution_ = other.resolution_;
+  map_ = other.map_;
+  target_is_map_ = other.target_is_map_;
+  aligner_ = other.aligner_;
+  result_ = other.result_;
+  this->tree_.reset(new LazyKdTree<PointTarget>());
+  this->target_cloud_updated_ = true;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
 void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setInputTarget(
     const PointCloudTargetConstPtr& cloud) {
   if (!cloud) throw std::invalid_argument("setInputTarget: the cloud is a null pointer");
@@ -135,7 +165,7 @@ SourcePoints WeightedNormalDistributionsTransform<PointSource, PointTarget, Scal
   points.reserve(this->indices_->size());
   for (const auto index : *this->indices_) {
     const PointSource& point = (*this->input_)[static_cast<std::size_t>(index)];
-    if (!pcl::isFinite(point)) continue;
+    if (!isWithinReach(point.x, point.y, point.z)) continue;
     StructuralLabel label = StructuralLabel::NON_GROUND;
     if constexpr (kLabelled) {
       if (points.labelled) {
