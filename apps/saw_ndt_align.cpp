@@ -70,12 +70,20 @@ typename pcl::PointCloud<PointT>::Ptr thinned(const typename pcl::PointCloud<Poi
   if constexpr (kLabelled) {
     for (const PointT& point : *cloud) labels.push_back(static_cast<saw_ndt::StructuralLabel>(point.label));
   }
+  // Voxels reach no farther than 2^19 of them from the origin, and clouds may be in UTM coordinates.
+  constexpr float kFar_m = 1.0e4F;
+  const auto first = std::find_if(cloud->begin(), cloud->end(), [](const PointT& p) { return pcl::isFinite(p); });
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();
+  if (first != cloud->end() && first->getVector3fMap().norm() > kFar_m) origin = first->getVector3fMap();
+  saw_ndt::internal::SourceSelection around_origin;
+  around_origin.T_base_lidar.translation() = -origin.template cast<double>();
   saw_ndt::internal::SourceVoxelFilter filter(voxel_m);
-  const saw_ndt::SourcePoints& points = filter.filter(saw_ndt::viewOf(*cloud), kLabelled ? &labels : nullptr);
+  const saw_ndt::SourcePoints& points =
+      filter.filter(saw_ndt::viewOf(*cloud), kLabelled ? &labels : nullptr, around_origin);
   auto centroids = pcl::make_shared<pcl::PointCloud<PointT>>();
   centroids->resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    (*centroids)[i].getVector3fMap() << points.x[i], points.y[i], points.z[i];
+    (*centroids)[i].getVector3fMap() = origin + Eigen::Vector3f(points.x[i], points.y[i], points.z[i]);
     if constexpr (kLabelled) (*centroids)[i].label = points.label[i];
   }
   return centroids;

@@ -15,7 +15,9 @@ namespace {
 constexpr char kDescription[] =
     "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
     "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
-    "is printed too. A scan that is rejected gets the pose that was predicted for it. Give -sensor, -ground-rule and "
+    "is printed too. A scan that is rejected gets the pose that was predicted for it; where none is located the drive "
+    "has "
+    "failed. Give -sensor, -ground-rule and "
     "-mounting-pitch-deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
     "pose, and all together they tell the errors.";
 
@@ -57,10 +59,12 @@ int main(int argc, char** argv) {
   app.addOption("max-iterations", &options.alignment.max_iterations, "N", "steps of an alignment at most");
   app.addOption("min-likelihood", &options.acceptance.min_likelihood, "X",
                 "a scan whose likelihood without weights (unweighted_likelihood in frames.csv) is less is rejected");
+  app.addOption("min-overlap", &options.acceptance.min_overlap, "SHARE",
+                "a scan of which less beside the ground lies on surfaces of the map is rejected");
   app.addOption("max-correction", &options.acceptance.max_correction_m, "METRES",
-                "a scan moved farther than this from its predicted pose is rejected");
+                "a scan moved farther than this from its predicted pose is rejected, unless that is as uncertain");
   app.addOption("max-correction-deg", &options.acceptance.max_correction_deg, "DEGREES",
-                "a scan turned farther than this from its predicted pose is rejected");
+                "a scan turned farther than this from its predicted pose is rejected, unless that is as uncertain");
   segmentation.addTo(app);
   app.addFlag("allow-other-segmentation", &options.allow_other_segmentation,
               "go on where the scans of the map were segmented by other options, as those of another LiDAR");
@@ -90,11 +94,24 @@ int main(int argc, char** argv) {
     saw_ndt::OutputFolder folder(out_dir);
     saw_ndt::ProgressBar progress(selected.size());
     const std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
-    const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *source, [&] { progress.step(); });
+    bool was_lost = false;
+    std::size_t done = 0;
+    const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *source, [&] {
+      const bool is_lost = localizer.track().status == saw_ndt::TrackStatus::LOST;
+      if (is_lost && !was_lost) std::cerr << app.name() << ": lost at scan " << selected[done] << '\n';
+      was_lost = is_lost;
+      ++done;
+      progress.step();
+    });
     for (const std::string& failure : run.failures) {
       if (!failure.empty()) std::cerr << app.name() << ": " << failure << ": rejected\n";
     }
     const saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
+    if (summary.accepted == 0) {
+      throw saw_ndt::Error(sequence_folder, "",
+                           "no scan was located in " + map_file +
+                               ", the first one for: " + saw_ndt::toString(run.results.front().acceptance));
+    }
     if (sequence.hasPoses() && !summary.metrics) {
       std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
     }

@@ -21,12 +21,18 @@ nlohmann::ordered_json toJson(const internal::DurationStatistics& durations) {
   return {{"mean", durations.mean}, {"p50", durations.p50}, {"p95", durations.p95}, {"max", durations.max}};
 }
 
+nlohmann::ordered_json toJson(const StateShare& share) { return {{"scans", share.scans}, {"seconds", share.seconds}}; }
+
 nlohmann::ordered_json toJson(const LocalizationSummary& summary) {
   nlohmann::ordered_json json;
   json["method"] = summary.method;
   json["scans"] = summary.scans;
   json["accepted"] = summary.accepted;
   json["rejected"] = summary.rejected;
+  json["states"] = {
+      {"tracking", toJson(summary.tracking)}, {"coasting", toJson(summary.coasting)}, {"lost", toJson(summary.lost)}};
+  json["recoveries"] = summary.recoveries;
+  json["degenerate_scans"] = summary.degenerate_scans;
   json["total_ms"] = toJson(summary.total_ms);
   json["segment_ms"] = toJson(summary.segment_ms);
   json["filter_ms"] = toJson(summary.filter_ms);

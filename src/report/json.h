@@ -19,6 +19,9 @@ nlohmann::ordered_json toJson(const KittiRelativeErrors& errors);
 /// {"mean", "p50", "p95", "max"}
 nlohmann::ordered_json toJson(const internal::DurationStatistics& durations);
 
+/// {"scans", "seconds"}
+nlohmann::ordered_json toJson(const StateShare& share);
+
 /// The object that is summary.json; the errors are members of it where they are known.
 nlohmann::ordered_json toJson(const LocalizationSummary& summary);
 

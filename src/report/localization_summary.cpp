@@ -68,6 +68,21 @@ void writeFrames(const std::filesystem::path& path, const DriveLocalization& run
   output.commit();
 }
 
+void addStates(const DriveLocalization& run, LocalizationSummary& summary) {
+  for (std::size_t i = 0; i < run.results.size(); ++i) {
+    const LocalizationResult& result = run.results[i];
+    const TrackStatus status = result.track.status;
+    StateShare& share = status == TrackStatus::LOST       ? summary.lost
+                        : status == TrackStatus::COASTING ? summary.coasting
+                                                          : summary.tracking;
+    ++share.scans;
+    if (result.accepted() && result.free_directions.cols() > 0) ++summary.degenerate_scans;
+    if (i == 0) continue;
+    share.seconds += std::max(0.0, result.stamp_s - run.results[i - 1].stamp_s);
+    if (result.accepted() && !run.results[i - 1].accepted()) ++summary.recoveries;
+  }
+}
+
 }  // namespace
 
 bool anyScanAfterSkip(const std::vector<double>& stamps_s, double skip_s) {
@@ -80,6 +95,7 @@ LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptio
   LocalizationSummary summary;
   summary.method = options.method.name;
   summary.scans = run.results.size();
+  addStates(run, summary);
   for (const R& result : run.results) ++(result.accepted() ? summary.accepted : summary.rejected);
   summary.total_ms = durationStatistics(collect(run, [](const R& r) { return r.times.total_ms; }));
   summary.segment_ms = durationStatistics(collect(run, [](const R& r) { return r.times.segment_ms; }));

@@ -14,10 +14,19 @@ namespace saw_ndt {
 /// Whether metrics that leave out the first `skip_s` seconds have a scan left. @param stamps_s  of the scans
 bool anyScanAfterSkip(const std::vector<double>& stamps_s, double skip_s);
 
+/// How long a localizer was in a state: that of a scan counts from the stamp of the scan before.
+struct StateShare {
+  std::size_t scans = 0;
+  double seconds = 0.0;
+};
+
 /// The figures of a run; the fields are those of summary.json.
 struct LocalizationSummary {
   std::string method;
   std::size_t scans = 0, accepted = 0, rejected = 0;
+  StateShare tracking, coasting, lost;
+  std::size_t recoveries = 0;        ///< how often a scan was accepted after ones that were not
+  std::size_t degenerate_scans = 0;  ///< accepted ones that do not hold the pose in every direction
   internal::DurationStatistics total_ms, segment_ms, filter_ms, align_ms;
   double source_points_mean = 0.0;
   double iterations_mean = 0.0, evaluations_mean = 0.0;
