@@ -1,0 +1,240 @@
+// Tells how far a localizer can be trusted: whether it accepts wrong poses, and whether it says when it is lost, in
+// drives with faults and in scenes that say little of where one is.
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "app_options.h"
+#include "campaign_drives.h"
+#include "common/executor.h"
+#include "fault_campaign.h"
+#include "progress_bar.h"
+#include "saw_ndt/common/error.h"
+#include "temporary_folder.h"
+#include "trust_measures.h"
+
+namespace {
+
+using saw_ndt::CampaignDrive;
+using saw_ndt::Fault;
+using saw_ndt::TrustCounts;
+
+constexpr char kDescription[] =
+    "Localizes simulated drives with faults in the map of another drive through the same scene, and prints how often a "
+    "wrong pose was accepted and how soon the localizer said that it is lost. A pose is wrong that is off by more than "
+    "0.5 m or 2 degrees; along directions that the scan leaves free, by more than three standard deviations. A run is "
+    "astray where the published pose is wrong until the localizer says that it is lost or the run ends; 'scans until "
+    "lost' counts from the first of these scans. 'NEES / 6' and 'inside 95 %' tell of accepted scans whether the error "
+    "is what the covariance says: 1 and 95 % are right. Every run begins elsewhere on the way.";
+
+struct Arguments {
+  std::vector<std::string> scenes{"residential", "highway", "rural", "tunnel", "bridge", "plain", "equal_houses"};
+  std::vector<std::string> kinds = saw_ndt::faultKinds();
+  std::string method = "weighted", work;
+  int seeds = 3, scans = 200, threads = 0;
+  bool strengths = false;
+};
+
+/// The map that runs are localized in, and where they start in it unless that follows from the drive.
+struct Place {
+  saw_ndt::NdtTarget target;
+  std::optional<Eigen::Isometry3d> start;
+};
+
+/// Runs of one fault in one scene, which differ in what is random.
+struct Cell {
+  const Fault* fault;
+  std::size_t fault_number;
+  int seed;
+};
+
+saw_ndt::CampaignRun makeRun(const Cell& cell, const saw_ndt::LoadedDrive& drive, int scans) {
+  const bool whole = cell.fault->drive == CampaignDrive::BRAKING;
+  const std::size_t count = whole ? drive.scans.size() : std::min(static_cast<std::size_t>(scans), drive.scans.size());
+  // The same for all faults of a seed, so that they can be compared.
+  saw_ndt::SceneRandom of_seed(saw_ndt::mixedSeed(cell.seed, 1));
+  const std::size_t first = of_seed.index(drive.scans.size() - count + 1);
+  saw_ndt::CampaignRun run = saw_ndt::CampaignRun::recorded(drive, first, count);
+  saw_ndt::SceneRandom of_fault(saw_ndt::mixedSeed(cell.seed, 2, cell.fault_number));
+  if (cell.fault->apply) cell.fault->apply(run, drive, of_fault);
+  return run;
+}
+
+TrustCounts play(const saw_ndt::CampaignRun& run, const saw_ndt::LoadedDrive& drive, const Place& place,
+                 const saw_ndt::LocalizationMethod& method, const std::string& name) {
+  static std::mutex output;
+  saw_ndt::LocalizerOptions options;
+  options.method = method;
+  options.alignment.threads = 1;
+  saw_ndt::Localizer localizer(place.target, options);
+  localizer.setInitialPose(place.start.value_or(run.T_map_base_initial));
+  saw_ndt::RunJudge judge(run);
+  std::vector<saw_ndt::LidarPoint> altered;
+  try {
+    for (const saw_ndt::PlayedScan& scan : run.scans) {
+      const std::vector<saw_ndt::LidarPoint>* points = &drive.scans[scan.recorded];
+      if (scan.alter) {
+        altered = *points;
+        scan.alter(altered);
+        points = &altered;
+      }
+      judge.see(localizer.localize(saw_ndt::viewOf(*points), scan.stamp_s));
+    }
+  } catch (const std::exception& error) {
+    judge.fail();
+    const std::lock_guard<std::mutex> lock(output);
+    std::cerr << name << ": " << error.what() << std::endl;
+  }
+  const TrustCounts counts = judge.finish();
+  if (counts.wrong_accepted > 0) {
+    const std::lock_guard<std::mutex> lock(output);
+    std::cerr << name << ": " << counts.wrong_accepted << " wrong poses accepted, the first at scan "
+              << judge.firstWrongAccepted() << " (fault from " << run.fault_begin << "), worst " << counts.worst_m
+              << " m, " << counts.worst_deg << " deg" << std::endl;
+  }
+  return counts;
+}
+
+class Campaign {
+ public:
+  Campaign(const Arguments& arguments, const std::filesystem::path& folder)
+      : arguments_(arguments),
+        method_(saw_ndt::LocalizationMethod::named(arguments.method)),
+        drives_(folder, method_, arguments.threads) {}
+
+  /// Prints the rows of a scene.
+  void runScene(std::size_t scene_number) {
+    const std::string& scene = arguments_.scenes[scene_number];
+    std::map<std::string, TrustCounts> of_rows;
+    std::vector<std::string> rows;  // in the order of the faults
+    for (const Fault& fault : chosenFaults()) {
+      const std::string row = rowOf(fault);
+      if (of_rows.emplace(row, TrustCounts()).second) rows.push_back(row);
+    }
+    for (const CampaignDrive which : {CampaignDrive::TEST, CampaignDrive::DENSE_TRAFFIC, CampaignDrive::BRAKING}) {
+      runDrive(scene_number, which, of_rows);
+    }
+    for (const std::string& row : rows) {
+      std::cout << saw_ndt::trustTableRow({scene, row}, of_rows[row]);
+      if (of_all_scenes_.emplace(row, TrustCounts()).second) all_rows_.push_back(row);
+      of_all_scenes_[row].add(of_rows[row]);
+    }
+    std::cout << std::flush;
+  }
+
+  void printTotals() {
+    TrustCounts all;
+    for (const std::string& row : all_rows_) {
+      std::cout << saw_ndt::trustTableRow({"all", row}, of_all_scenes_[row]);
+      all.add(of_all_scenes_[row]);
+    }
+    std::cout << saw_ndt::trustTableRow({"all", "all"}, all);
+  }
+
+ private:
+  std::vector<Fault> chosenFaults() const {
+    std::vector<Fault> chosen;
+    for (const Fault& fault : saw_ndt::allFaults()) {
+      const auto& kinds = arguments_.kinds;
+      if (std::find(kinds.begin(), kinds.end(), fault.kind) != kinds.end()) chosen.push_back(fault);
+    }
+    return chosen;
+  }
+
+  std::string rowOf(const Fault& fault) const {
+    return arguments_.strengths && !fault.strength.empty() ? fault.kind + ", " + fault.strength : fault.kind;
+  }
+
+  Place placeOf(const Fault& fault, std::size_t scene_number) {
+    const std::string& scene = arguments_.scenes[scene_number];
+    switch (fault.map) {
+      case saw_ndt::CampaignMap::OWN:
+        return {drives_.target(scene, CampaignDrive::MAP), std::nullopt};
+      case saw_ndt::CampaignMap::CHANGED:
+        return {drives_.target(scene, CampaignDrive::SPARSE_MAP), std::nullopt};
+      case saw_ndt::CampaignMap::OF_OTHER_SCENE:
+        break;
+    }
+    const std::vector<std::string> usual = Arguments().scenes;
+    std::string other = arguments_.scenes[(scene_number + 1) % arguments_.scenes.size()];
+    if (other == scene) other = scene == usual[0] ? usual[1] : usual[0];
+    return {drives_.target(other, CampaignDrive::MAP), drives_.courseStart(other)};
+  }
+
+  void runDrive(std::size_t scene_number, CampaignDrive which, std::map<std::string, TrustCounts>& of_rows) {
+    const std::string& scene = arguments_.scenes[scene_number];
+    const std::vector<Fault> faults = chosenFaults();
+    std::vector<Cell> cells;
+    std::map<saw_ndt::CampaignMap, Place> places;
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+      if (faults[i].drive != which) continue;
+      if (places.count(faults[i].map) == 0) places.emplace(faults[i].map, placeOf(faults[i], scene_number));
+      const bool random = which != CampaignDrive::BRAKING;
+      for (int seed = 1; seed <= (random ? arguments_.seeds : 1); ++seed) cells.push_back({&faults[i], i, seed});
+    }
+    if (cells.empty()) return;
+    const saw_ndt::LoadedDrive drive = drives_.load(scene, which);
+    std::cerr << scene << ": " << cells.size() << " runs" << std::endl;
+    std::vector<TrustCounts> counts(cells.size());
+    saw_ndt::ProgressBar progress(cells.size());
+    saw_ndt::internal::forEachChunkOffline(arguments_.threads, cells.size(), [&](std::size_t i, int) {
+      const Cell& cell = cells[i];
+      const saw_ndt::CampaignRun run = makeRun(cell, drive, arguments_.scans);
+      const std::string name =
+          scene + ", " + cell.fault->kind + " " + cell.fault->strength + ", seed " + std::to_string(cell.seed);
+      counts[i] = play(run, drive, places.at(cell.fault->map), method_, name);
+      progress.step();
+    });
+    for (std::size_t i = 0; i < cells.size(); ++i) of_rows[rowOf(*cells[i].fault)].add(counts[i]);
+  }
+
+  const Arguments& arguments_;
+  saw_ndt::LocalizationMethod method_;
+  saw_ndt::CampaignDrives drives_;
+  std::map<std::string, TrustCounts> of_all_scenes_;
+  std::vector<std::string> all_rows_;
+};
+
+void check(const Arguments& arguments) {
+  if (arguments.seeds < 1) throw saw_ndt::UsageError("option -seeds: must be 1 or more");
+  const int least_scans = static_cast<int>(saw_ndt::kGoodScans) + 1;
+  if (arguments.scans < least_scans) {
+    throw saw_ndt::UsageError("option -scans: must be " + std::to_string(least_scans) + " or more");
+  }
+  const std::vector<std::string> known = saw_ndt::faultKinds();
+  for (const std::string& kind : arguments.kinds) {
+    if (std::find(known.begin(), known.end(), kind) != known.end()) continue;
+    std::string message = "option -faults: '" + kind + "' is none of";
+    for (const std::string& name : known) message += " " + name;
+    throw saw_ndt::UsageError(message);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  saw_ndt::AppOptions app("trust_benchmark", kDescription);
+  app.addOption("scenes", &arguments.scenes, "NAME,...", "scenes, names or files as of saw_ndt_simulate");
+  app.addOption("faults", &arguments.kinds, "NAME,...", "kinds of faults");
+  app.addOption("seeds", &arguments.seeds, "N", "runs of each strength of a fault in each scene");
+  app.addOption("scans", &arguments.scans, "N", "scans of a run; most faults come after 30");
+  app.addOption("work", &arguments.work, "DIR",
+                "folder that keeps the simulated drives, some 4 GB a scene, for the next time (default: none is kept)");
+  app.addChoice("method", &arguments.method, saw_ndt::LocalizationMethod::names(), "method of the localizer");
+  app.addFlag("strengths", &arguments.strengths, "a row for each strength of a fault");
+  return saw_ndt::runApp(argc, argv, app, [&] {
+    check(arguments);
+    arguments.threads = app.threads();
+    std::unique_ptr<saw_ndt::TemporaryFolder> temporary;
+    if (arguments.work.empty()) temporary = std::make_unique<saw_ndt::TemporaryFolder>();
+    Campaign campaign(arguments, temporary ? temporary->path() : std::filesystem::path(arguments.work));
+    std::cout << saw_ndt::trustTableHead({"scene", "fault"}) << std::flush;
+    for (std::size_t scene = 0; scene < arguments.scenes.size(); ++scene) campaign.runScene(scene);
+    campaign.printTotals();
+  });
+}
