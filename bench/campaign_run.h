@@ -22,7 +22,7 @@ struct PlayedScan {
 struct CampaignRun {
   Eigen::Isometry3d T_map_base_initial = Eigen::Isometry3d::Identity();
   std::vector<PlayedScan> scans;
-  std::size_t fault_begin = 0;  ///< the first scan that a fault is seen in
+  std::size_t fault_begin = 0;  ///< the first scan that a fault is seen in, and that counts
   bool place_in_map = true;     ///< false: no accepted pose can be right
 
   /// Scans of a drive as they were recorded, from `first` on, `count` of them or to its end, from the true pose.

@@ -26,9 +26,12 @@ std::string text(double value, const char* unit) {
 /// Numbers of the scans that a fault of single scans meets, each among good ones; there is one after each of them.
 std::vector<std::size_t> singleScans(const CampaignRun& run) {
   std::vector<std::size_t> numbers;
-  for (std::size_t i = kGoodScans; i + 1 < run.scans.size(); i += kScansFromFault) numbers.push_back(i);
+  for (std::size_t i = run.fault_begin; i + 1 < run.scans.size(); i += kScansFromFault) numbers.push_back(i);
   return numbers;
 }
+
+/// All scans count, for there is no fault, or it is in the drive or the map.
+void none(CampaignRun& run, const LoadedDrive&, SceneRandom&) { run.fault_begin = 0; }
 
 /// The initial pose is this far off in any direction, and turned by this angle to either side.
 Apply wrongStart(double distance_m, double angle_deg) {
@@ -43,9 +46,7 @@ Apply wrongStart(double distance_m, double angle_deg) {
 
 /// The vehicle is somewhere else along the way from one scan to the next; the stamps go on as if nothing had been.
 void kidnap(CampaignRun& run, const LoadedDrive& drive, SceneRandom& random) {
-  run.fault_begin = kGoodScans;
-  if (run.scans.size() <= kGoodScans) return;
-  const std::size_t from = run.scans[kGoodScans].recorded, rest = run.scans.size() - kGoodScans;
+  const std::size_t from = run.scans[run.fault_begin].recorded, rest = run.scans.size() - run.fault_begin;
   std::vector<std::size_t> places;
   for (std::size_t to = 0; to < drive.scans.size(); ++to) {
     const double jump_m = (drive.T_map_lidar[to].translation() - drive.T_map_lidar[from].translation()).norm();
@@ -54,16 +55,15 @@ void kidnap(CampaignRun& run, const LoadedDrive& drive, SceneRandom& random) {
   }
   if (places.empty()) return;
   const std::size_t to = places[random.index(places.size())];
-  run.scans.resize(kGoodScans + std::min(rest, drive.scans.size() - to));
-  for (std::size_t i = kGoodScans; i < run.scans.size(); ++i) {
-    run.scans[i].recorded = to + i - kGoodScans;
+  run.scans.resize(run.fault_begin + std::min(rest, drive.scans.size() - to));
+  for (std::size_t i = run.fault_begin; i < run.scans.size(); ++i) {
+    run.scans[i].recorded = to + i - run.fault_begin;
     run.scans[i].T_map_lidar = drive.T_map_lidar[run.scans[i].recorded];
   }
 }
 
 void alterForAWhile(CampaignRun& run, const std::function<void(std::vector<LidarPoint>&, std::size_t)>& alter) {
-  run.fault_begin = kGoodScans;
-  for (std::size_t i = kGoodScans; i < std::min(run.scans.size(), kGoodScans + kFaultyScans); ++i) {
+  for (std::size_t i = run.fault_begin; i < std::min(run.scans.size(), run.fault_begin + kFaultyScans); ++i) {
     run.scans[i].alter = [alter, i](std::vector<LidarPoint>& points) { alter(points, i); };
   }
 }
@@ -86,12 +86,10 @@ Apply rain(void (*of_scan)(std::vector<LidarPoint>&, double, std::uint64_t), dou
 /// Scans are missing for so long; the stamps are true.
 Apply drop(double seconds) {
   return [=](CampaignRun& run, const LoadedDrive& drive, SceneRandom&) {
-    run.fault_begin = kGoodScans;
-    if (run.scans.size() <= kGoodScans) return;
     const std::size_t first = run.scans.front().recorded, count = run.scans.size();
-    const double end_s = run.scans[kGoodScans].stamp_s + seconds;
-    run.scans.resize(kGoodScans);
-    for (PlayedScan& scan : CampaignRun::recorded(drive, first + kGoodScans, drive.scans.size()).scans) {
+    const double end_s = run.scans[run.fault_begin].stamp_s + seconds;
+    run.scans.resize(run.fault_begin);
+    for (PlayedScan& scan : CampaignRun::recorded(drive, first + run.fault_begin, drive.scans.size()).scans) {
       if (scan.stamp_s >= end_s - 1e-6 && run.scans.size() < count) run.scans.push_back(std::move(scan));
     }
   };
@@ -99,7 +97,6 @@ Apply drop(double seconds) {
 
 /// A scan comes once more with the same stamp.
 void repeatStamped(CampaignRun& run, const LoadedDrive&, SceneRandom&) {
-  run.fault_begin = kGoodScans;
   std::vector<std::size_t> numbers = singleScans(run);
   std::reverse(numbers.begin(), numbers.end());
   for (const std::size_t i : numbers) {
@@ -110,7 +107,6 @@ void repeatStamped(CampaignRun& run, const LoadedDrive&, SceneRandom&) {
 
 /// A scan comes once more in place of the next one, with that one's stamp.
 void repeatAsNext(CampaignRun& run, const LoadedDrive&, SceneRandom&) {
-  run.fault_begin = kGoodScans;
   for (const std::size_t i : singleScans(run)) {
     run.scans[i + 1].recorded = run.scans[i].recorded;
     run.scans[i + 1].T_map_lidar = run.scans[i].T_map_lidar;
@@ -120,7 +116,6 @@ void repeatAsNext(CampaignRun& run, const LoadedDrive&, SceneRandom&) {
 /// Two scans come in the wrong order, each with its own stamp or with those that one would expect.
 Apply swapScans(bool sorted_stamps) {
   return [=](CampaignRun& run, const LoadedDrive&, SceneRandom&) {
-    run.fault_begin = kGoodScans;
     for (const std::size_t i : singleScans(run)) {
       std::swap(run.scans[i], run.scans[i + 1]);
       if (sorted_stamps) std::swap(run.scans[i].stamp_s, run.scans[i + 1].stamp_s);
@@ -130,16 +125,14 @@ Apply swapScans(bool sorted_stamps) {
 
 Apply jumpOfStamps(double seconds, bool once) {
   return [=](CampaignRun& run, const LoadedDrive&, SceneRandom&) {
-    run.fault_begin = kGoodScans;
-    const std::size_t end = once ? kGoodScans + 1 : run.scans.size();
-    for (std::size_t i = kGoodScans; i < std::min(end, run.scans.size()); ++i) run.scans[i].stamp_s += seconds;
+    const std::size_t end = once ? run.fault_begin + 1 : run.scans.size();
+    for (std::size_t i = run.fault_begin; i < std::min(end, run.scans.size()); ++i) run.scans[i].stamp_s += seconds;
   };
 }
 
 /// Single scans have points that say nothing, or next to nothing.
 Apply badScans(AlterScan alter, bool shows_nothing) {
   return [=](CampaignRun& run, const LoadedDrive&, SceneRandom&) {
-    run.fault_begin = kGoodScans;
     for (const std::size_t i : singleScans(run)) {
       run.scans[i].alter = alter;
       run.scans[i].shows_nothing = shows_nothing;
@@ -152,8 +145,7 @@ Apply movedSensor(double roll_deg, double pitch_deg, const Eigen::Vector3d& shif
   Vector6d xyz_rpy;
   xyz_rpy << shift_m, radiansFromDegrees(roll_deg), radiansFromDegrees(pitch_deg), 0.0;
   return [T_old_new = transformFromXyzRpy(xyz_rpy)](CampaignRun& run, const LoadedDrive&, SceneRandom&) {
-    run.fault_begin = kGoodScans;
-    for (std::size_t i = kGoodScans; i < run.scans.size(); ++i) {
+    for (std::size_t i = run.fault_begin; i < run.scans.size(); ++i) {
       run.scans[i].alter = [T_old_new](std::vector<LidarPoint>& points) { moveSensor(points, T_old_new); };
       run.scans[i].T_map_lidar = run.scans[i].T_map_lidar * T_old_new;
     }
@@ -173,19 +165,25 @@ std::vector<Fault> makeFaults() {
   std::vector<Fault> faults;
   const auto add = [&faults](const char* kind, const std::string& strength, Apply apply,
                              CampaignDrive drive = CampaignDrive::TEST, CampaignMap map = CampaignMap::OWN) {
-    faults.push_back({kind, strength, drive, map, std::move(apply)});
+    faults.push_back({kind, strength, false, drive, map, std::move(apply)});
   };
-  add("none", "", {});
-  for (const double m : {1, 2, 5, 10, 20, 50}) add("wrong_start", text(m, " m"), wrongStart(m, 0.0));
-  for (const double deg : {5, 10, 20, 45, 90, 180}) add("wrong_heading", text(deg, " deg"), wrongStart(0.0, deg));
+  const auto addFromStart = [&faults](const char* kind, const std::string& strength, Apply apply,
+                                      CampaignMap map = CampaignMap::OWN) {
+    faults.push_back({kind, strength, true, CampaignDrive::TEST, map, std::move(apply)});
+  };
+  add("none", "", none);
+  addFromStart("start_on_the_way", "", {});
+  for (const double m : {1, 2, 5, 10, 20, 50}) addFromStart("wrong_start", text(m, " m"), wrongStart(m, 0.0));
+  for (const double deg : {5, 10, 20, 45, 90, 180})
+    addFromStart("wrong_heading", text(deg, " deg"), wrongStart(0.0, deg));
   for (const auto& [m, deg] : {std::pair(1.0, 5.0), {2.0, 10.0}, {5.0, 20.0}, {10.0, 45.0}, {50.0, 180.0}}) {
-    add("wrong_start_and_heading", text(m, " m, ") + text(deg, " deg"), wrongStart(m, deg));
+    addFromStart("wrong_start_and_heading", text(m, " m, ") + text(deg, " deg"), wrongStart(m, deg));
   }
   add("kidnapping", "", kidnap);
   for (const double percent : {20, 50, 90}) add("blocked_view", text(percent, " %"), blockedView(percent / 100.0));
   for (const double percent : {5, 20, 50}) add("rain", text(percent, " % near"), rain(rainOn, percent / 100.0));
   for (const double percent : {50, 90}) add("rain", text(percent, " % lost"), rain(loseReturns, percent / 100.0));
-  add("dense_traffic", "", {}, CampaignDrive::DENSE_TRAFFIC);
+  add("dense_traffic", "", none, CampaignDrive::DENSE_TRAFFIC);
   for (const double s : {0.5, 1.0, 2.0, 5.0, 10.0}) add("dropped_scans", text(s, " s"), drop(s));
   add("repeated_scans", "same stamp", repeatStamped);
   add("repeated_scans", "next stamp", repeatAsNext);
@@ -208,8 +206,8 @@ std::vector<Fault> makeFaults() {
   add("moved_sensor", "0.2 m ahead", movedSensor(0.0, 0.0, {0.2, 0.0, 0.0}));
   add("moved_sensor", "0.2 m left", movedSensor(0.0, 0.0, {0.0, 0.2, 0.0}));
   add("moved_sensor", "0.2 m up", movedSensor(0.0, 0.0, {0.0, 0.0, 0.2}));
-  add("other_place", "", otherPlace, CampaignDrive::TEST, CampaignMap::OF_OTHER_SCENE);
-  add("changed_place", "", {}, CampaignDrive::TEST, CampaignMap::CHANGED);
+  addFromStart("other_place", "", otherPlace, CampaignMap::OF_OTHER_SCENE);
+  add("changed_place", "", none, CampaignDrive::TEST, CampaignMap::CHANGED);
   return faults;
 }
 

@@ -9,8 +9,8 @@
 
 namespace saw_ndt {
 
-/// Scans of a run that go well before a fault that comes on the way.
-constexpr std::size_t kGoodScans = 30;
+/// Scans before a fault that comes on the way, at least and at most.
+constexpr std::size_t kLeastRunUp = 30, kGreatestRunUp = 230;
 
 /// Which map a run is localized in.
 enum class CampaignMap {
@@ -23,10 +23,13 @@ enum class CampaignMap {
 struct Fault {
   std::string kind;      ///< one word, such as `kidnapping`
   std::string strength;  ///< how bad it is, such as "5 m"; empty where there is one kind only
+  /// The fault is there from the first scan on, and runs start anywhere on the way; otherwise they start where the
+  /// drive does, so that what is known of the motion comes from where there is something to see.
+  bool from_start = false;
   CampaignDrive drive = CampaignDrive::TEST;
   CampaignMap map = CampaignMap::OWN;
-  /// Changes a run as recorded into one with the fault; what is random is drawn anew for every run. Empty: the fault
-  /// is in drive or map.
+  /// Changes a run as recorded into one with the fault, from CampaignRun::fault_begin on; what is random is drawn anew
+  /// for every run. Empty: the fault is in drive or map.
   std::function<void(CampaignRun& run, const LoadedDrive& drive, SceneRandom& random)> apply;
 };
 

@@ -27,9 +27,14 @@ constexpr char kDescription[] =
     "Localizes simulated drives with faults in the map of another drive through the same scene, and prints how often a "
     "wrong pose was accepted and how soon the localizer said that it is lost. A pose is wrong that is off by more than "
     "0.5 m or 2 degrees; along directions that the scan leaves free, by more than three standard deviations. A run is "
-    "astray where the published pose is wrong until the localizer says that it is lost or the run ends; 'scans until "
-    "lost' counts from the first of these scans. 'NEES / 6' and 'inside 95 %' tell of accepted scans whether the error "
-    "is what the covariance says: 1 and 95 % are right. Every run begins elsewhere on the way.";
+    "astray where the published pose is wrong from some scan on until the localizer says that it is lost or the run "
+    "ends; 'scans until lost' counts from the first of these scans. 'NEES / 6' and 'inside 95 %' tell of accepted "
+    "scans whether the error is what the covariance says: 1 and 95 % are right. Faults of the start meet a vehicle "
+    "anywhere on the way; others come on a drive from its beginning, after 30 to 230 scans, and the scans before them "
+    "are not counted.";
+
+// Of a run: what comes before a fault, the fault and a scan after it.
+constexpr std::size_t kLeastScans = saw_ndt::kLeastRunUp + 2;
 
 struct Arguments {
   std::vector<std::string> scenes{"residential", "highway", "rural", "tunnel", "bridge", "plain", "equal_houses"};
@@ -45,22 +50,32 @@ struct Place {
   std::optional<Eigen::Isometry3d> start;
 };
 
-/// Runs of one fault in one scene, which differ in what is random.
+/// A run of a fault in a scene.
 struct Cell {
-  const Fault* fault;
-  std::size_t fault_number;
-  int seed;
+  const Fault* fault;  ///< of allFaults()
+  int seed;            ///< of what is random
+
+  std::size_t faultNumber() const { return static_cast<std::size_t>(fault - saw_ndt::allFaults().data()); }
 };
 
 saw_ndt::CampaignRun makeRun(const Cell& cell, const saw_ndt::LoadedDrive& drive, int scans) {
-  const bool whole = cell.fault->drive == CampaignDrive::BRAKING;
-  const std::size_t count = whole ? drive.scans.size() : std::min(static_cast<std::size_t>(scans), drive.scans.size());
-  // The same for all faults of a seed, so that they can be compared.
+  const Fault& fault = *cell.fault;
+  const std::size_t in_drive = drive.scans.size(), count = std::min(static_cast<std::size_t>(scans), in_drive);
+  // The same place for all faults of a seed, so that they can be compared.
   saw_ndt::SceneRandom of_seed(saw_ndt::mixedSeed(cell.seed, 1));
-  const std::size_t first = of_seed.index(drive.scans.size() - count + 1);
-  saw_ndt::CampaignRun run = saw_ndt::CampaignRun::recorded(drive, first, count);
-  saw_ndt::SceneRandom of_fault(saw_ndt::mixedSeed(cell.seed, 2, cell.fault_number));
-  if (cell.fault->apply) cell.fault->apply(run, drive, of_fault);
+  saw_ndt::CampaignRun run;
+  if (fault.drive == CampaignDrive::BRAKING) {
+    run = saw_ndt::CampaignRun::recorded(drive, 0, in_drive);
+  } else if (fault.from_start) {
+    run = saw_ndt::CampaignRun::recorded(drive, of_seed.index(in_drive - count + 1), count);
+  } else {
+    const std::size_t room = std::min(in_drive - count, saw_ndt::kGreatestRunUp - saw_ndt::kLeastRunUp);
+    const std::size_t more_run_up = of_seed.index(room + 1);
+    run = saw_ndt::CampaignRun::recorded(drive, 0, more_run_up + count);
+    run.fault_begin = more_run_up + saw_ndt::kLeastRunUp;
+  }
+  saw_ndt::SceneRandom of_fault(saw_ndt::mixedSeed(cell.seed, 2, cell.faultNumber()));
+  if (fault.apply) fault.apply(run, drive, of_fault);
   return run;
 }
 
@@ -111,8 +126,8 @@ class Campaign {
     const std::string& scene = arguments_.scenes[scene_number];
     std::map<std::string, TrustCounts> of_rows;
     std::vector<std::string> rows;  // in the order of the faults
-    for (const Fault& fault : chosenFaults()) {
-      const std::string row = rowOf(fault);
+    for (const Fault* fault : chosenFaults()) {
+      const std::string row = rowOf(*fault);
       if (of_rows.emplace(row, TrustCounts()).second) rows.push_back(row);
     }
     for (const CampaignDrive which : {CampaignDrive::TEST, CampaignDrive::DENSE_TRAFFIC, CampaignDrive::BRAKING}) {
@@ -136,11 +151,11 @@ class Campaign {
   }
 
  private:
-  std::vector<Fault> chosenFaults() const {
-    std::vector<Fault> chosen;
+  std::vector<const Fault*> chosenFaults() const {
+    std::vector<const Fault*> chosen;
     for (const Fault& fault : saw_ndt::allFaults()) {
       const auto& kinds = arguments_.kinds;
-      if (std::find(kinds.begin(), kinds.end(), fault.kind) != kinds.end()) chosen.push_back(fault);
+      if (std::find(kinds.begin(), kinds.end(), fault.kind) != kinds.end()) chosen.push_back(&fault);
     }
     return chosen;
   }
@@ -167,17 +182,17 @@ class Campaign {
 
   void runDrive(std::size_t scene_number, CampaignDrive which, std::map<std::string, TrustCounts>& of_rows) {
     const std::string& scene = arguments_.scenes[scene_number];
-    const std::vector<Fault> faults = chosenFaults();
     std::vector<Cell> cells;
     std::map<saw_ndt::CampaignMap, Place> places;
-    for (std::size_t i = 0; i < faults.size(); ++i) {
-      if (faults[i].drive != which) continue;
-      if (places.count(faults[i].map) == 0) places.emplace(faults[i].map, placeOf(faults[i], scene_number));
+    for (const Fault* fault : chosenFaults()) {
+      if (fault->drive != which) continue;
+      if (places.count(fault->map) == 0) places.emplace(fault->map, placeOf(*fault, scene_number));
       const bool random = which != CampaignDrive::BRAKING;
-      for (int seed = 1; seed <= (random ? arguments_.seeds : 1); ++seed) cells.push_back({&faults[i], i, seed});
+      for (int seed = 1; seed <= (random ? arguments_.seeds : 1); ++seed) cells.push_back({fault, seed});
     }
     if (cells.empty()) return;
     const saw_ndt::LoadedDrive drive = drives_.load(scene, which);
+    if (drive.scans.size() < kLeastScans) throw saw_ndt::Error(scene, "", "has too short a course");
     std::cerr << scene << ": " << cells.size() << " runs" << std::endl;
     std::vector<TrustCounts> counts(cells.size());
     saw_ndt::ProgressBar progress(cells.size());
@@ -201,9 +216,8 @@ class Campaign {
 
 void check(const Arguments& arguments) {
   if (arguments.seeds < 1) throw saw_ndt::UsageError("option -seeds: must be 1 or more");
-  const int least_scans = static_cast<int>(saw_ndt::kGoodScans) + 1;
-  if (arguments.scans < least_scans) {
-    throw saw_ndt::UsageError("option -scans: must be " + std::to_string(least_scans) + " or more");
+  if (arguments.scans < static_cast<int>(kLeastScans)) {
+    throw saw_ndt::UsageError("option -scans: must be " + std::to_string(kLeastScans) + " or more");
   }
   const std::vector<std::string> known = saw_ndt::faultKinds();
   for (const std::string& kind : arguments.kinds) {
@@ -222,7 +236,8 @@ int main(int argc, char** argv) {
   app.addOption("scenes", &arguments.scenes, "NAME,...", "scenes, names or files as of saw_ndt_simulate");
   app.addOption("faults", &arguments.kinds, "NAME,...", "kinds of faults");
   app.addOption("seeds", &arguments.seeds, "N", "runs of each strength of a fault in each scene");
-  app.addOption("scans", &arguments.scans, "N", "scans of a run; most faults come after 30");
+  app.addOption("scans", &arguments.scans, "N",
+                "scans of a run: from 30 before the fault on, where it comes on the way");
   app.addOption("work", &arguments.work, "DIR",
                 "folder that keeps the simulated drives, some 4 GB a scene, for the next time (default: none is kept)");
   app.addChoice("method", &arguments.method, saw_ndt::LocalizationMethod::names(), "method of the localizer");

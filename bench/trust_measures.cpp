@@ -93,6 +93,7 @@ void TrustCounts::add(const TrustCounts& other) {
   wrong_accepted += other.wrong_accepted;
   worst_m = std::max(worst_m, other.worst_m);
   worst_deg = std::max(worst_deg, other.worst_deg);
+  astray_before_runs += other.astray_before_runs;
   astray_runs += other.astray_runs;
   scans_until_lost.insert(scans_until_lost.end(), other.scans_until_lost.begin(), other.scans_until_lost.end());
   wrongly_lost_runs += other.wrongly_lost_runs;
@@ -105,6 +106,10 @@ void RunJudge::see(const LocalizationResult& result) {
   const PlayedScan& scan = run_.scans.at(next_++);
   const PoseDifference published = differenceOf(result.T_map_base, scan.T_map_lidar);
   const bool wrong = !run_.place_in_map || misleads(published, result.covariance, freeDirections(result));
+  if (run_.fault_begin > static_cast<std::size_t>(number)) {
+    counts_.astray_before_runs = wrong ? 1 : 0;
+    return;
+  }
   ++counts_.scans;
   if (result.accepted()) {
     ++counts_.accepted;
@@ -148,8 +153,8 @@ std::string trustTableHead(const std::vector<std::string>& names) {
   std::vector<std::string> columns = names;
   for (const char* name :
        {"runs", "scans", "accepted %", "rejected though right", "wrong accepted", "worst accepted (m / deg)",
-        "accepted of nothing", "astray", "told lost", "scans until lost (median)", "wrongly lost", "NEES / 6",
-        "inside 95 % (%)", "rejected inside 95 % (%)", "failed"}) {
+        "accepted of nothing", "astray before", "astray", "told lost", "scans until lost (median)", "wrongly lost",
+        "NEES / 6", "inside 95 % (%)", "rejected inside 95 % (%)", "failed"}) {
     columns.emplace_back(name);
   }
   std::string head = "|", rule = "|";
@@ -168,8 +173,10 @@ std::string trustTableRow(const std::vector<std::string>& names, const TrustCoun
   cells.push_back(percentOf(counts.accepted, counts.scans));
   cells.push_back(std::to_string(counts.rejected_though_right));
   cells.push_back(std::to_string(counts.wrong_accepted));
-  cells.push_back(number(counts.worst_m, "%.3f / ") + number(counts.worst_deg, "%.2f"));
+  const bool has_worst = counts.worst_m > 0.0;
+  cells.push_back(has_worst ? number(counts.worst_m, "%.3f / ") + number(counts.worst_deg, "%.2f") : "");
   cells.push_back(std::to_string(counts.accepted_of_nothing));
+  cells.push_back(std::to_string(counts.astray_before_runs));
   cells.push_back(std::to_string(counts.astray_runs));
   cells.push_back(std::to_string(counts.scans_until_lost.size()));
   cells.push_back(counts.scans_until_lost.empty() ? "" : number(internal::median(counts.scans_until_lost), "%.1f"));

@@ -42,7 +42,7 @@ struct Consistency {
   void add(const Consistency& other);
 };
 
-/// What a campaign counts over the scans of one or more runs.
+/// What a campaign counts over the scans of one or more runs, from the fault on.
 struct TrustCounts {
   int runs = 0, failed_runs = 0;  ///< failed: the localizer threw
   int scans = 0, accepted = 0;
@@ -50,6 +50,7 @@ struct TrustCounts {
   int rejected_though_right = 0;          ///< the aligned pose within 0.5 m and 2 degrees
   int wrong_accepted = 0;                 ///< see misleads(); in a map of another place, all
   double worst_m = 0.0, worst_deg = 0.0;  ///< of accepted poses
+  int astray_before_runs = 0;             ///< the last published pose before the fault was wrong already
   /// Runs in which the published pose was wrong from some scan on, until the localizer said that it is lost or the run
   /// ended.
   int astray_runs = 0;
