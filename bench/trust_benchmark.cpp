@@ -26,7 +26,7 @@ using saw_ndt::TrustCounts;
 constexpr char kDescription[] =
     "Localizes simulated drives with faults in the map of another drive through the same scene, and prints how often a "
     "wrong pose was accepted and how soon the localizer said that it is lost. A pose is wrong that is off by more than "
-    "0.5 m or 2 degrees; along directions that the scan leaves free, by more than three standard deviations. A run is "
+    "0.5 m or 2 degrees, and by more than three standard deviations where the scan leaves a direction free. A run is "
     "astray where the published pose is wrong from some scan on until the localizer says that it is lost or the run "
     "ends; 'scans until lost' counts from the first of these scans. 'NEES / 6' and 'inside 95 %' tell of accepted "
     "scans whether the error is what the covariance says: 1 and 95 % are right. Faults of the start meet a vehicle "
@@ -107,9 +107,9 @@ TrustCounts play(const saw_ndt::CampaignRun& run, const saw_ndt::LoadedDrive& dr
   const TrustCounts counts = judge.finish();
   if (counts.wrong_accepted > 0) {
     const std::lock_guard<std::mutex> lock(output);
-    std::cerr << name << ": " << counts.wrong_accepted << " wrong poses accepted, the first at scan "
-              << judge.firstWrongAccepted() << " (fault from " << run.fault_begin << "), worst " << counts.worst_m
-              << " m, " << counts.worst_deg << " deg" << std::endl;
+    std::cerr << name << ": " << counts.wrong_accepted << " wrong poses accepted, worst " << counts.worst_m << " m, "
+              << counts.worst_deg << " deg; fault from scan " << run.fault_begin << ", first at "
+              << judge.firstWrongAccepted() << std::endl;
   }
   return counts;
 }

@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "evaluation/statistics.h"
-#include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
 namespace {
@@ -21,7 +20,8 @@ bool isRight(const PoseDifference& difference) {
 
 /// Whether the alignment came to a pose at all.
 bool isAligned(const AlignmentResult& alignment) {
-  return alignment.status == AlignmentStatus::CONVERGED || alignment.status == AlignmentStatus::ITERATION_LIMIT;
+  return alignment.status == AlignmentStatus::CONVERGED || alignment.status == AlignmentStatus::ITERATION_LIMIT ||
+         alignment.status == AlignmentStatus::UNDETERMINED;
 }
 
 std::string percentOf(int part, int whole) {
@@ -37,22 +37,32 @@ std::string number(double value, const char* format) {
   return text;
 }
 
-}  // namespace
-
-bool isLost(const LocalizationResult&) { return false; }
-
-Directions freeDirections(const LocalizationResult&) { return Directions(6, 0); }
-
-PoseDifference differenceOf(const Eigen::Isometry3d& T_map_base, const Eigen::Isometry3d& T_map_base_true) {
-  PoseDifference difference;
-  difference.e << T_map_base.translation() - T_map_base_true.translation(),
-      rotationVector(T_map_base.linear() * T_map_base_true.linear().transpose());
-  return difference;
+/// "1.000 2.000 3.000 m, 0.100 0.200 0.300 deg"
+std::string inWords(const Vector6d& along_axes) {
+  char text[120];
+  const Eigen::Vector3d deg = along_axes.tail<3>() * degreesFromRadians(1.0);
+  std::snprintf(text, sizeof text, "%.3f %.3f %.3f m, %.3f %.3f %.3f deg", along_axes[0], along_axes[1], along_axes[2],
+                deg[0], deg[1], deg[2]);
+  return text;
 }
 
-bool misleads(const PoseDifference& difference, const Matrix6d& covariance, const Directions& free_directions) {
+std::string inWords(int scan, const LocalizationResult& result, const PoseDifference& difference) {
+  const Eigen::Matrix3d R_map_base = result.T_map_base.linear();
+  Vector6d in_base;
+  in_base << R_map_base.transpose() * difference.e.head<3>(), R_map_base.transpose() * difference.e.tail<3>();
+  const std::string free = freeAxes(result.free_directions, R_map_base);
+  return "scan " + std::to_string(scan) + ": error " + inWords(in_base) + "; sigma " +
+         inWords(standardDeviations(result.covariance, R_map_base)) + "; free: " + (free.empty() ? "nothing" : free);
+}
+
+}  // namespace
+
+bool isLost(const LocalizationResult& result) { return result.track.status == TrackStatus::LOST; }
+
+bool misleads(const PoseDifference& difference, const Matrix6d& covariance, const PoseDirections& free_directions) {
+  if (isRight(difference)) return false;
   Vector6d lengths;
-  lengths << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(kRotationLength_m);
+  lengths << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(kRotationArm_m);
   const Vector6d scaled = lengths.asDiagonal() * difference.e;
   const Eigen::VectorXd along_free = free_directions.transpose() * scaled;
   for (Eigen::Index i = 0; i < along_free.size(); ++i) {
@@ -104,8 +114,8 @@ void TrustCounts::add(const TrustCounts& other) {
 void RunJudge::see(const LocalizationResult& result) {
   const int number = static_cast<int>(next_);
   const PlayedScan& scan = run_.scans.at(next_++);
-  const PoseDifference published = differenceOf(result.T_map_base, scan.T_map_lidar);
-  const bool wrong = !run_.place_in_map || misleads(published, result.covariance, freeDirections(result));
+  const PoseDifference published{poseDifference(scan.T_map_lidar, result.T_map_base)};
+  const bool wrong = !run_.place_in_map || misleads(published, result.covariance, result.free_directions);
   if (run_.fault_begin > static_cast<std::size_t>(number)) {
     counts_.astray_before_runs = wrong ? 1 : 0;
     return;
@@ -115,13 +125,13 @@ void RunJudge::see(const LocalizationResult& result) {
     ++counts_.accepted;
     if (scan.shows_nothing) ++counts_.accepted_of_nothing;
     if (wrong) ++counts_.wrong_accepted;
-    if (wrong && first_wrong_accepted_ < 0) first_wrong_accepted_ = number;
+    if (wrong && first_wrong_accepted_.empty()) first_wrong_accepted_ = inWords(number, result, published);
     if (run_.place_in_map) {
       counts_.worst_m = std::max(counts_.worst_m, published.distance_m());
       counts_.worst_deg = std::max(counts_.worst_deg, published.angle_deg());
     }
   } else if (run_.place_in_map && !scan.shows_nothing && isAligned(result.alignment) &&
-             isRight(differenceOf(result.alignment.T_map_source, scan.T_map_lidar))) {
+             isRight({poseDifference(scan.T_map_lidar, result.alignment.T_map_source)})) {
     ++counts_.rejected_though_right;
   }
   if (run_.place_in_map) {

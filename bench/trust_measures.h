@@ -5,30 +5,24 @@
 #include <vector>
 
 #include "campaign_run.h"
+#include "saw_ndt/common/geometry.h"
 #include "saw_ndt/localization/localizer.h"
 
 namespace saw_ndt {
 
-/// Directions by (translation in m, rotation in rad times kRotationLength_m), map frame, as orthonormal columns.
-using Directions = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
-constexpr double kRotationLength_m = 10.0;
-
 /// Whether the localizer says that it does not know where the vehicle is.
 bool isLost(const LocalizationResult& result);
-/// The directions that the localizer says the scan did not determine.
-Directions freeDirections(const LocalizationResult& result);
 
-/// The difference of a pose from the truth.
+/// How far a pose is off.
 struct PoseDifference {
-  Vector6d e = Vector6d::Zero();  ///< t - t_true, and the rotation vector of R R_true^T; map frame, m and rad
+  Vector6d e = Vector6d::Zero();  ///< see poseDifference()
   double distance_m() const { return e.head<3>().norm(); }
   double angle_deg() const { return degreesFromRadians(e.tail<3>().norm()); }
 };
-PoseDifference differenceOf(const Eigen::Isometry3d& T_map_base, const Eigen::Isometry3d& T_map_base_true);
 
-/// Whether a pose that is so far off would mislead its user: by more than 0.5 m or 2 degrees, leaving out what lies
-/// along free directions, which must be within three standard deviations of the covariance.
-bool misleads(const PoseDifference& difference, const Matrix6d& covariance, const Directions& free_directions);
+/// Whether a pose that is so far off would mislead its user: by more than 0.5 m or 2 degrees, unless that is along free
+/// directions alone and within three standard deviations of the covariance there.
+bool misleads(const PoseDifference& difference, const Matrix6d& covariance, const PoseDirections& free_directions);
 
 /// e^T C^-1 e, or nothing (a negative number) where the covariance is not positive definite.
 double normalizedSquaredError(const PoseDifference& difference, const Matrix6d& covariance);
@@ -72,15 +66,16 @@ class RunJudge {
   void fail() { counts_.failed_runs = 1; }
 
   TrustCounts finish();
-  /// The first scan that was accepted wrongly; -1: none.
-  int firstWrongAccepted() const { return first_wrong_accepted_; }
+  /// The first scan that was accepted wrongly in words: its number, error and standard deviations in the axes of the
+  /// base, and what was free; empty for none.
+  const std::string& firstWrongAccepted() const { return first_wrong_accepted_; }
 
  private:
   const CampaignRun& run_;
   TrustCounts counts_;
   std::size_t next_ = 0;
   int wrong_since_ = -1;
-  int first_wrong_accepted_ = -1;
+  std::string first_wrong_accepted_;
   bool was_lost_ = false;
 };
 
