@@ -239,7 +239,7 @@ int main(int argc, char** argv) {
   app.addOption("scans", &arguments.scans, "N",
                 "scans of a run: from 30 before the fault on, where it comes on the way");
   app.addOption("work", &arguments.work, "DIR",
-                "folder that keeps the simulated drives, some 4 GB a scene, for the next time (default: none is kept)");
+                "folder that keeps the simulated drives, 2 to 8 GB a scene, for the next time (default: none is kept)");
   app.addChoice("method", &arguments.method, saw_ndt::LocalizationMethod::names(), "method of the localizer");
   app.addFlag("strengths", &arguments.strengths, "a row for each strength of a fault");
   return saw_ndt::runApp(argc, argv, app, [&] {
