@@ -49,7 +49,8 @@ int main(int argc, char** argv) {
   double rain_share = 0.0, reference_noise_m = 0.0;
   saw_ndt::AppOptions app("saw_ndt_simulate", kDescription);
   app.addPositional("OUT_DIR", &out_dir, "folder for the sequence, made where it is missing");
-  app.addOption("scene", &scene, "NAME", "residential, highway or rural, or the file of another scene");
+  app.addOption("scene", &scene, "NAME",
+                "residential, highway, rural, tunnel, bridge, plain or equal_houses, or the file of another scene");
   app.addOption("drive", &drive_options.drive, "N", "which drive through the scene, 1 or more");
   app.addOption("seed", &seed, "N", "of the scene and of all its drives");
   app.addOption("scans", &scans, "N", "scans at most; 0: to the end of the course or trajectory");

@@ -63,6 +63,11 @@ void makeBuilding(Workshop& w) {
 
 void makeWall(Workshop& w) { w.builder.addBox({-w.x(), -w.y(), -0.5}, {w.x(), w.y(), w.z()}, SceneMaterial::CONCRETE); }
 
+/// A plate overhead whose upper side is at the full height, such as that of a tunnel.
+void makeCeiling(Workshop& w) {
+  w.builder.addBox({-w.x(), -w.y(), w.z() - 0.4}, {w.x(), w.y(), w.z()}, SceneMaterial::CONCRETE);
+}
+
 /// Panels between pilasters.
 void makeSoundWall(Workshop& w) {
   w.builder.addBox({-w.x(), -0.06, -0.5}, {w.x(), 0.06, w.z()}, SceneMaterial::CONCRETE);
@@ -194,6 +199,7 @@ const std::map<std::string, void (*)(Workshop&)>& makers() {
       {"bush", makeBush},         {"tuft", makeTuft},   {"pole", makePole},
       {"lamp", makeLamp},         {"sign", makeSign},   {"guard_rail", makeGuardRail},
       {"car", makeCar},           {"truck", makeTruck}, {"person", makePerson},
+      {"ceiling", makeCeiling},
   };
   return all;
 }

@@ -34,7 +34,7 @@ struct Footprint {
 };
 
 bool liesAlongGround(const std::string& kind) {
-  for (const char* along : {"wall", "sound_wall", "fence", "hedge", "guard_rail", "car", "truck"}) {
+  for (const char* along : {"wall", "sound_wall", "ceiling", "fence", "hedge", "guard_rail", "car", "truck"}) {
     if (kind == along) return true;
   }
   return false;
@@ -60,7 +60,7 @@ class Placement {
 
   std::vector<Variant> makeVariants(const ObjectRow& row, SceneRandom& random) {
     std::vector<Variant> variants;
-    for (int i = 0; i < kVariants; ++i) {
+    for (int i = 0; i < (row.alike ? 1 : kVariants); ++i) {
       const ObjectSize size{random.uniform(row.length_m), random.uniform(row.width_m), random.uniform(row.height_m)};
       variants.push_back({size, static_cast<std::uint32_t>(scene_.meshes.size())});
       scene_.meshes.push_back(makeObjectMesh(row.object, size, false, mixedSeed(random.index(1u << 30))));
@@ -71,7 +71,8 @@ class Placement {
   void placeSide(const ObjectRow& row, const std::vector<Variant>& variants, double side, SceneRandom& random) {
     double section_end_m = 0.0, from_edge_m = 0.0;
     bool present = false;
-    for (double along_m = random.uniform(0.0, row.spacing_m.max); along_m < route_.length_m();) {
+    const double end_m = std::min(row.along_m.max, route_.length_m());
+    for (double along_m = row.along_m.min + random.uniform(0.0, row.spacing_m.max); along_m < end_m;) {
       if (along_m >= section_end_m) {
         section_end_m = along_m + std::max(random.uniform(row.section_m), 1e-6);
         from_edge_m = random.uniform(row.from_edge_m);

@@ -128,11 +128,13 @@ void readRow(MemberReader& reader, ObjectRow& row) {
   reader.read("left", row.left);
   reader.read("right", row.right);
   reader.read("from_edge_m", row.from_edge_m);
+  reader.read("along_m", row.along_m);
   reader.read("spacing_m", row.spacing_m);
   reader.read("section_m", row.section_m);
   reader.read("probability", row.probability);
   readSize(reader, row);
   reader.read("heading_deg", row.heading_deg);
+  reader.read("alike", row.alike);
   reader.read("per_drive", row.per_drive);
 }
 
@@ -206,6 +208,7 @@ void SceneDescription::check() const {
   for (const ObjectRow& row : rows) {
     checkObject(row);
     checkRange("from_edge_m", row.from_edge_m, -50.0, 100.0, "between -50 and 100");
+    checkRange("along_m", row.along_m, 0.0, 1e5, "between 0 and 100000");
     checkRange("spacing_m", row.spacing_m, 0.5, 1e5, "at least 0.5");
     checkRange("section_m", row.section_m, 0.0, 1e5, "at least 0");
     checkOption(row.probability >= 0.0 && row.probability <= 1.0, "probability", row.probability, "between 0 and 1");

@@ -41,11 +41,13 @@ struct ObjectRow {
   std::string object;              ///< one of objectKinds()
   bool left = true, right = true;  ///< on which sides
   ValueRange from_edge_m;          ///< of the near side from the edge of the road; negative: on the road
+  ValueRange along_m{0, 1e5};      ///< the stretch of the way that the row is on, from its start
   ValueRange spacing_m{10, 10};    ///< from the middle of one to that of the next
   ValueRange section_m;            ///< where not 0: objects come in sections of this length, each all or none, in line
   double probability = 1.0;        ///< of an object or section
   ValueRange length_m, width_m, height_m;  ///< along the road, across, and up
   double heading_deg = 0.0;                ///< greatest deviation from the direction of the road
+  bool alike = false;                      ///< all of them are the same, in size and in details
   bool per_drive = false;                  ///< drawn again for every drive
 };
 

@@ -70,7 +70,8 @@ TEST_F(SimulateApp, DrivesATrajectoryAndStatesANoisyReference) {
 }
 
 TEST_F(SimulateApp, WrongUsageIsNamedAndLeavesNothing) {
-  expectFails(2, {"-scene", "moon", "residential", "highway", "rural"}, "-scene moon");
+  expectFails(2, {"-scene", "moon", "residential", "highway", "rural", "tunnel", "bridge", "plain", "equal_houses"},
+              "-scene moon");
   expectFails(2, {"-times"}, "-times times.txt");
   expectFails(2, {"rain_share = 2"}, "-rain 2");
   expectFails(2, {"drive = 0"}, "-drive 0");

@@ -33,6 +33,13 @@ TEST(ObjectMeshes, EveryKindHasAboutTheSizeAskedFor) {
   }
 }
 
+TEST(ObjectMeshes, ACeilingLeavesTheWayBelowItFree) {
+  for (const Eigen::Vector3f& vertex : makeObjectMesh("ceiling", {10.0, 9.0, 5.0}, false, 1).vertices) {
+    EXPECT_GE(vertex.z(), 4.5f);
+    EXPECT_LE(vertex.z(), 5.0f);
+  }
+}
+
 TEST(ObjectMeshes, TheSeedDecidesTheDetails) {
   const ObjectSize size{3.0, 3.0, 5.0};
   const auto verticesOf = [&](std::uint64_t seed) { return makeObjectMesh("tree", size, false, seed).vertices; };

@@ -38,7 +38,7 @@ TEST(SceneBuilder, DrivesShareWhatStandsAndDifferInWhatMoves) {
 }
 
 TEST(SceneBuilder, NothingStandsInTheVehiclesWay) {
-  for (const char* name : {"residential", "highway", "rural"}) {
+  for (const char* name : {"residential", "highway", "rural", "tunnel", "bridge", "equal_houses"}) {
     const SimulatedDrive around = shortDrive(name);
     const Scene& scene = around.scene;
     ASSERT_GT(scene.objects.size(), 50U) << name;
@@ -80,6 +80,39 @@ TEST(SceneBuilder, TrafficMovesAtItsSpeedAndNeverThroughTheVehicle) {
     }
   }
   EXPECT_GT(seen, 50);
+}
+
+TEST(SceneBuilder, ARowKeepsToItsStretchOfTheWayAndMayBeOfEqualObjects) {
+  SceneDescription description = shortScene("highway");
+  ObjectRow row;
+  row.object = "building";
+  row.from_edge_m = {5, 5};
+  row.spacing_m = {20, 20};
+  row.length_m = row.width_m = row.height_m = {6, 9};
+  row.along_m = {100, 200};
+  row.alike = true;
+  description.rows = {row};
+  description.traffic.clear();
+  const SimulatedDrive around = driveCourse(description, {}, 0.1, 10);
+  ASSERT_EQ(around.scene.objects.size(), 11U);  // the ground, and five to either side
+  for (std::size_t i = 1; i < around.scene.objects.size(); ++i) {
+    const PlacedObject& object = around.scene.objects[i];
+    EXPECT_EQ(object.mesh, around.scene.objects[1].mesh);
+    const float along_m = object.T_scene_object.translation().x();  // the course begins with a straight
+    EXPECT_GE(along_m, 99.0f);
+    EXPECT_LE(along_m, 201.0f);
+  }
+}
+
+TEST(SceneBuilder, FewerObjectsAreSomeOfTheSameObjects) {
+  DriveOptions sparse;
+  sparse.object_density = 0.67;
+  const std::set<Place> all = placesOf(shortDrive("rural").scene), some = placesOf(shortDrive("rural", sparse).scene);
+  std::vector<Place> common;
+  std::set_intersection(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(common));
+  EXPECT_LT(some.size(), all.size() * 8 / 10);
+  // The others had no room beside one that is missing now.
+  EXPECT_GT(common.size(), some.size() * 95 / 100);
 }
 
 TEST(SceneBuilder, DensitiesThinObjectsAndTraffic) {

@@ -19,7 +19,7 @@ TEST(SceneDescription, ReadsTheScenesOfThisProject) {
     EXPECT_FALSE(scene.traffic.empty());
     ++count;
   }
-  EXPECT_EQ(count, 3);
+  EXPECT_EQ(count, 7);
 }
 
 TEST(SceneDescription, ReadsEveryKindOfMember) {
@@ -28,7 +28,7 @@ TEST(SceneDescription, ReadsEveryKindOfMember) {
     // two rows
     "name": "a", "speed_mps": 5, "road": {"left_m": 3}, "course": [{"length_m": 10}, {"length_m": 20, "turn_deg": -90}],
     "rows": [{"object": "pole", "left": false, "from_edge_m": [1, 2], "spacing_m": 7, "length_m": 0.1, "width_m": 0.1,
-              "height_m": [2, 3], "per_drive": true}]
+              "height_m": [2, 3], "per_drive": true, "alike": true, "along_m": [20, 30]}]
   })");
   const SceneDescription scene = readSceneDescription(path);
   EXPECT_EQ(scene.speed_mps, 5.0);
@@ -40,6 +40,9 @@ TEST(SceneDescription, ReadsEveryKindOfMember) {
   EXPECT_FALSE(scene.rows[0].left);
   EXPECT_TRUE(scene.rows[0].right);
   EXPECT_TRUE(scene.rows[0].per_drive);
+  EXPECT_TRUE(scene.rows[0].alike);
+  EXPECT_EQ(scene.rows[0].along_m.min, 20.0);
+  EXPECT_EQ(scene.rows[0].along_m.max, 30.0);
   EXPECT_EQ(scene.rows[0].from_edge_m.max, 2.0);
   EXPECT_EQ(scene.rows[0].spacing_m.min, 7.0);
   EXPECT_EQ(scene.rows[0].spacing_m.max, 7.0);
@@ -61,6 +64,7 @@ TEST(SceneDescription, WhatIsWrongIsNamed) {
   expectRefused(R"({"name": "a", "rows": [{)" + pole + R"(}, {"object": "dragon"}]})", {"object = dragon"});
   expectRefused(R"({"name": "a", "rows": [{)" + pole + R"(, "spacing_m": 0}]})", {"spacing_m = 0"});
   expectRefused(R"({"name": "a", "rows": [{)" + pole + R"(, "from_edge_m": [2, 1]}]})", {"from_edge_m"});
+  expectRefused(R"({"name": "a", "rows": [{)" + pole + R"(, "along_m": [-5, 10]}]})", {"along_m = -5"});
   expectRefused(R"({"name": "a", "traffic": [{)" + pole + R"(, "per_km": -1}]})", {"per_km = -1"});
   expectThrows<Error>([&] { readSceneDescription(folder.path() / "none.json"); }, {"none.json"});
 }
