@@ -9,6 +9,7 @@
 #include "common/executor.h"
 #include "common/stopwatch.h"
 #include "localization/rival_poses.h"
+#include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
 
@@ -102,10 +103,40 @@ struct Localizer::Attempt {
   bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
 };
 
+// Little is held for sure along a free direction. It is held all the same where the alignment comes back from both
+// sides.
+void Localizer::confirmFreeDirections(const SourcePoints& source, AlignmentResult& alignment) {
+  constexpr double kWayOff_m = 0.4;
+  constexpr double kBack_m = 0.04;
+  const Eigen::Isometry3d found = alignment.T_map_source;
+  const PoseDirections suspected = alignment.free_directions;
+  alignment.free_directions.resize(6, 0);
+  for (Eigen::Index k = 0; k < suspected.cols(); ++k) {
+    bool comes_back = true;
+    for (const double way_m : {-kWayOff_m, kWayOff_m}) {
+      if (!comes_back) break;
+      Eigen::Isometry3d start = found;
+      start.translation() += way_m * suspected.col(k).head<3>();
+      start.linear() = rotationFromVector(way_m / kRotationArm_m * suspected.col(k).tail<3>()) * found.linear();
+      const AlignmentResult again = aligner_(source, start);
+      Vector6d missed = poseDifference(found, again.T_map_source);
+      missed.tail<3>() *= kRotationArm_m;
+      comes_back = again.converged() && missed.norm() < kBack_m;
+    }
+    if (comes_back) {
+      alignment.covariance -= freeCovariance(suspected.col(k));
+      continue;
+    }
+    alignment.free_directions.conservativeResize(6, alignment.free_directions.cols() + 1);
+    alignment.free_directions.rightCols<1>() = suspected.col(k);
+  }
+}
+
 Localizer::Attempt Localizer::attempt(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
                                       const PoseExpectation& expectation) {
   Attempt result;
   result.alignment = aligner_(source, T_map_base_start);
+  if (result.alignment.converged()) confirmFreeDirections(source, result.alignment);
   result.T_map_base =
       keptAlongFreeDirections(expectation.T_map_base, result.alignment.T_map_source, result.alignment.free_directions);
   result.acceptance = judge_.judge(result.alignment, result.T_map_base, expectation);
@@ -116,21 +147,34 @@ Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const At
                                             const PoseExpectation& expectation) {
   const double min_advantage_sigmas = options_.acceptance.min_advantage_sigmas;
   if (!target_ || min_advantage_sigmas == 0.0) return found;
-  constexpr double kLeastRadius_m = 5.0;
-  constexpr double kSigmas = 3.0;
-  const double sigma_m = std::sqrt(expectation.covariance.diagonal().head<2>().maxCoeff());
-  const double radius_m = std::max(kLeastRadius_m, std::min(kSigmas * sigma_m, kSigmas * kFreeSigma_m));
+  const int threads = options_.alignment.threads;
+  const auto rivalsAround = [&](const Eigen::Isometry3d& T_map_base, double radius_m) {
+    return rivalPoses(*target_, source, T_map_base, found.alignment.covariance, radius_m, threads);
+  };
+  std::vector<Eigen::Isometry3d> starts = rivalsAround(found.alignment.T_map_source, expectation.search_radius_m);
+  // If the stamp is wrong, the vehicle is still where it was.
+  const Eigen::Isometry3d& T_map_last = prediction_.state().T_map_base;
+  if ((T_map_last.translation() - found.T_map_base.translation()).norm() > expectation.search_radius_m) {
+    constexpr double kNear_m = 10.0;
+    for (const Eigen::Isometry3d& start : rivalsAround(T_map_last, kNear_m)) starts.push_back(start);
+  }
+
   Attempt best = found;
   bool ambiguous = false;
-  for (const Eigen::Isometry3d& start :
-       internal::rivalPoses(*target_, source, found.alignment, radius_m, options_.alignment.threads)) {
+  for (const Eigen::Isometry3d& start : starts) {
     const Attempt rival = attempt(source, start, expectation);
-    // A rival that is free along that way as well keeps to the same place.
+    // What is free along that way keeps to the same place.
     const double apart_m = (rival.T_map_base.translation() - best.T_map_base.translation()).norm();
-    if (!rival.alignment.converged() || apart_m < internal::kOtherPlace_m) continue;
-    const double sigmas = internal::advantage(*target_, source, best.T_map_base, rival.T_map_base);
-    if (std::abs(sigmas) < min_advantage_sigmas) ambiguous = true;
-    if (sigmas < 0.0) best = rival;
+    if (!rival.alignment.converged()) continue;
+    if (apart_m >= kOtherPlace_m) {
+      const double sigmas = advantage(*target_, source, best.T_map_base, rival.T_map_base);
+      if (std::abs(sigmas) < min_advantage_sigmas) ambiguous = true;
+      if (sigmas < 0.0) best = rival;
+    } else if (best.alignment.free_directions.cols() < rival.alignment.free_directions.cols()) {
+      // A place where the scan fits better, but does not hold, shows that this one only seems to hold.
+      const double sigmas = advantage(*target_, source, best.alignment.T_map_source, rival.alignment.T_map_source);
+      if (sigmas < -min_advantage_sigmas) ambiguous = true;
+    }
   }
   if (ambiguous) best.acceptance = Acceptance::AMBIGUOUS;
   return best;
@@ -147,7 +191,9 @@ Localizer::Attempt Localizer::find(const SourcePoints& source, const PoseExpecta
   }
   if (!found.accepted() || !judge_.isDoubtful(found.alignment, found.T_map_base, expectation, track)) return found;
   found = withoutRivals(source, found, expectation);
-  if (found.accepted()) found.acceptance = judge_.judgeDoubtful(found.alignment, track);
+  if (found.accepted()) {
+    found.acceptance = judge_.judgeDoubtful(found.alignment, found.T_map_base, expectation, track);
+  }
   return found;
 }
 

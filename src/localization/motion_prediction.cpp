@@ -1,5 +1,6 @@
 #include "saw_ndt/localization/motion_prediction.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -22,6 +23,9 @@ constexpr double kAccelerationTime_s = 10.0;
 // Standard deviations of a velocity that is not known: of a vehicle in town (m/s), and of its turns (rad/s).
 constexpr double kUnknownSpeed_mps = 15.0;
 constexpr double kUnknownTurnRate_radps = 0.5;
+
+// A pose that is surer than this tells velocities (m).
+constexpr double kSureSigma_m = 0.1;
 
 // Adding up the recent past of the overlap.
 constexpr double kNewOverlapShare = 0.1;
@@ -130,30 +134,52 @@ void MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
   checkOption(std::isfinite(stamp_s), "stamp_s", stamp_s, "finite");
   if (state_.status == TrackStatus::NOT_INITIALIZED) reset(pose.T_map_base);
   const std::optional<double> since_last_s = state_.timeSinceLast(stamp_s);
-  const bool clock_was_set_back = since_last_s.has_value() && *since_last_s < -kLongestWayBack_s;
+  // A late scan is where the motion says that it was. One that is not shows that the clock was set back.
+  const bool clock_was_set_back =
+      since_last_s.has_value() && (*since_last_s < -kLongestWayBack_s || (*since_last_s < 0.0 && !pose.learn_velocity));
   state_.status = TrackStatus::TRACKING;
   state_.rejected_scans = 0;
   if (since_last_s && !clock_was_set_back && *since_last_s < kSameMoment_s) return;
 
   const bool comes_after = since_last_s.has_value() && !clock_was_set_back;
-  const double elapsed_s = elapsed(stamp_s);
+  const Covariance predicted = propagated(elapsed(stamp_s));
   const Matrix6d held = projectorOntoHeld(pose.free_directions);
   Eigen::Matrix<double, 18, 6> gain = Eigen::Matrix<double, 18, 6>::Zero();
   gain.topRows<6>() = held;
-  const bool learn_velocity = comes_after && (pose.learn_velocity || !state_.velocity_known);
-  if (learn_velocity) gain.middleRows<6>(6) = held / *since_last_s;
-  Covariance remaining = Covariance::Identity();
-  remaining.leftCols<6>() -= gain;
-  covariance_ = remaining * propagated(elapsed_s) * remaining.transpose() + gain * pose.covariance * gain.transpose();
-
-  if (learn_velocity) {
+  if (comes_after && (pose.learn_velocity || !state_.velocity_known)) {
+    const double elapsed_s = *since_last_s;
+    const Eigen::Isometry3d T_map_predicted = predict(stamp_s);
     const Eigen::Isometry3d T_last_now = state_.T_map_base.inverse() * pose.T_map_base;
     const Eigen::Vector3d turned = rotationVector(T_last_now.linear());
-    const Eigen::Vector3d driven = meanRotation(turned).inverse() * T_last_now.translation();
+    Matrix6d velocity_gain = Matrix6d::Identity() / elapsed_s;
+    Eigen::Vector3d velocity_mps =
+        pose.T_map_base.linear() * (meanRotation(turned).inverse() * T_last_now.translation() / elapsed_s);
+    if (state_.velocity_known) {
+      // Where the last pose was unsure, such as along a tunnel that has ended, the way from it does not tell the
+      // velocity; what is known of how position and velocity went wrong together does (the Kalman gain).
+      const Eigen::Vector3d innovation = pose.T_map_base.translation() - T_map_predicted.translation();
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> last(state_.covariance.topLeftCorner<3, 3>());
+      for (int k = 0; k < 3; ++k) {
+        if (last.eigenvalues()[k] < kSureSigma_m * kSureSigma_m) continue;
+        const Eigen::Vector3d u = last.eigenvectors().col(k);
+        const double position_variance =
+            u.dot((predicted.topLeftCorner<3, 3>() + pose.covariance.topLeftCorner<3, 3>()) * u);
+        const double kalman_gain = u.dot(predicted.block<3, 3>(6, 0) * u) / position_variance;
+        velocity_gain.topLeftCorner<3, 3>() += (kalman_gain - 1.0 / elapsed_s) * u * u.transpose();
+        velocity_mps += (kalman_gain - 1.0 / elapsed_s) * u * u.dot(innovation);
+      }
+    }
+    gain.middleRows<6>(6) = velocity_gain * held;
+    state_.velocity_base_mps = pose.T_map_base.linear().transpose() * velocity_mps;
+    state_.turn_rate_base_radps = turned / elapsed_s;
     state_.velocity_known = true;
-    state_.velocity_base_mps = bounded(driven / *since_last_s, options_.max_speed_mps);
-    state_.turn_rate_base_radps = bounded(turned / *since_last_s, options_.max_turn_rate_radps);
+    state_.velocity_base_mps = bounded(state_.velocity_base_mps, options_.max_speed_mps);
+    state_.turn_rate_base_radps = bounded(state_.turn_rate_base_radps, options_.max_turn_rate_radps);
   }
+  Covariance remaining = Covariance::Identity();
+  remaining.leftCols<6>() -= gain;
+  covariance_ = remaining * predicted * remaining.transpose() + gain * pose.covariance * gain.transpose();
+
   state_.T_map_base = pose.T_map_base;
   state_.covariance = covariance_.topLeftCorner<6, 6>();
   state_.stamp_s = stamp_s;

@@ -25,8 +25,16 @@ constexpr double kSigmas = 3.0;
 constexpr double kVagueSigma_m = 1.0;
 constexpr double kVagueSigma_rad = 0.3;
 
-// A pose where it is expected is taken with less overlap than usual, but not with this share of it.
-constexpr double kMuchLessThanUsual = 0.6;
+// With this share of the usual overlap a pose is looked at again; with less than the second it is not taken even where
+// it is expected. From scan to scan the overlap of right poses changes by a few hundredths.
+constexpr double kLessThanUsual = 0.93;
+constexpr double kMuchLessThanUsual = 0.7;
+
+// Without a pose for longer, predictions are doubted (s).
+constexpr double kLongestGap_s = 0.35;
+
+// In doubt, so far along the road is looked for rivals at least (m).
+constexpr double kLeastSearchRadius_m = 5.0;
 
 double largestSigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
@@ -91,14 +99,30 @@ PoseJudge::PoseJudge(const AcceptanceOptions& options) : options_(options) { opt
 
 PoseExpectation PoseJudge::expect(const Eigen::Isometry3d& T_map_base_predicted, const Matrix6d& covariance,
                                   const TrackState& track, double stamp_s, double max_turn_rate_radps) const {
-  const double elapsed_s = std::abs(track.timeSinceLast(stamp_s).value_or(0.0));
+  const double since_last_s = track.timeSinceLast(stamp_s).value_or(0.0);
+  const double elapsed_s = std::abs(since_last_s);
   const double sigma_m = largestSigma(covariance.topLeftCorner<3, 3>());
-  const double sigma_deg = degreesFromRadians(largestSigma(covariance.bottomRightCorner<3, 3>()));
+  const double sigma_rad = largestSigma(covariance.bottomRightCorner<3, 3>());
   const double way_m = track.velocity_known ? 0.5 * kHardestAcceleration_mps2 * elapsed_s * elapsed_s
                                             : options_.max_unknown_speed_mps * elapsed_s;
-  return {T_map_base_predicted, covariance, std::max({options_.max_correction_m, way_m, kSigmas * sigma_m}),
-          std::max(
-              {options_.max_correction_deg, degreesFromRadians(max_turn_rate_radps * elapsed_s), kSigmas * sigma_deg})};
+  PoseExpectation expectation;
+  expectation.T_map_base = T_map_base_predicted;
+  expectation.covariance = covariance;
+  expectation.max_correction_m = std::max({options_.max_correction_m, way_m, kSigmas * sigma_m});
+  expectation.max_correction_deg =
+      std::max({options_.max_correction_deg,
+                degreesFromRadians(std::max(max_turn_rate_radps * elapsed_s, kSigmas * sigma_rad))});
+  // Over a gap, or back in time, it may as well be the stamp that is wrong, and the whole way with it.
+  const double predicted_way_m = (T_map_base_predicted.translation() - track.T_map_base.translation()).norm();
+  const bool wrong_stamp = since_last_s < 0.0 || since_last_s > kLongestGap_s;
+  if (wrong_stamp) expectation.max_correction_m = std::max(expectation.max_correction_m, 1.2 * predicted_way_m);
+  const bool anywhere = !track.stamp_s || track.status == TrackStatus::LOST;
+  expectation.search_radius_m = anywhere
+                                    ? kSigmas * kFreeSigma_m
+                                    : std::clamp(std::max(kSigmas * sigma_m, wrong_stamp ? 1.2 * predicted_way_m : 0.0),
+                                                 kLeastSearchRadius_m, kSigmas * kFreeSigma_m);
+  expectation.vague = anywhere || wrong_stamp || sigma_m > kVagueSigma_m || sigma_rad > kVagueSigma_rad;
+  return expectation;
 }
 
 Acceptance PoseJudge::judge(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
@@ -128,16 +152,17 @@ bool PoseJudge::isSurprising(const AlignmentResult& alignment, const Eigen::Isom
 
 bool PoseJudge::isDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                            const PoseExpectation& expectation, const TrackState& track) const {
-  const bool vague = largestSigma(expectation.covariance.topLeftCorner<3, 3>()) > kVagueSigma_m ||
-                     largestSigma(expectation.covariance.bottomRightCorner<3, 3>()) > kVagueSigma_rad;
-  const bool fits_worse = track.usual_overlap && alignment.overlap < kMuchLessThanUsual * *track.usual_overlap;
-  return vague || fits_worse || !track.stamp_s || isSurprising(alignment, T_map_base, expectation);
+  const bool fits_worse = alignment.overlap < kLessThanUsual * track.usual_overlap.value_or(0.0);
+  return expectation.vague || fits_worse || isSurprising(alignment, T_map_base, expectation);
 }
 
-Acceptance PoseJudge::judgeDoubtful(const AlignmentResult& alignment, const TrackState& track) const {
-  const double usual_overlap = options_.min_usual_overlap_share * track.usual_overlap.value_or(0.0);
-  if (alignment.overlap < std::max(options_.min_overlap_in_doubt, usual_overlap)) return Acceptance::LOW_OVERLAP;
-  return Acceptance::ACCEPTED;
+Acceptance PoseJudge::judgeDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
+                                    const PoseExpectation& expectation, const TrackState& track) const {
+  const bool unexpected = expectation.vague || isSurprising(alignment, T_map_base, expectation);
+  const double usual_share = unexpected ? options_.min_usual_overlap_share : kMuchLessThanUsual;
+  const double least = std::max(unexpected ? options_.min_overlap_in_doubt : options_.min_overlap,
+                                usual_share * track.usual_overlap.value_or(0.0));
+  return alignment.overlap < least ? Acceptance::LOW_OVERLAP : Acceptance::ACCEPTED;
 }
 
 }  // namespace saw_ndt

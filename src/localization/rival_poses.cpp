@@ -4,82 +4,119 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <unordered_map>
 #include <utility>
 
+#include "common/executor.h"
+#include "map/voxel_sums_table.h"
 #include "registration/alignment_assessment.h"
-#include "saw_ndt/registration/pose_scorer.h"
 
 namespace saw_ndt::internal {
 namespace {
 
-constexpr std::size_t kScoredPoints = 600;
-constexpr std::size_t kMostRivals = 3;
+constexpr std::size_t kSearchedPoints = 1500;
+constexpr std::size_t kComparedPoints = 6000;
+constexpr std::size_t kMostRivals = 4;
+constexpr double kRivalsApart_m = 2.0;
 
-// A sample of what is not ground, which tells one place of a road from another.
-SourcePoints scoredSample(const SourcePoints& source) {
-  const auto ground = static_cast<std::uint8_t>(StructuralLabel::GROUND);
-  const auto non_ground_count =
-      source.size() - static_cast<std::size_t>(std::count(source.label.begin(), source.label.end(), ground));
-  const std::size_t stride = std::max<std::size_t>(1, non_ground_count / kScoredPoints);
-  SourcePoints sample;
-  sample.labelled = source.labelled;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    if (source.label[i] == ground || next++ % stride != 0) continue;
-    sample.add(source.x[i], source.y[i], source.z[i], static_cast<StructuralLabel>(source.label[i]));
+struct CoordinateHash {
+  std::size_t operator()(const VoxelCoordinate& voxel) const { return hashCoordinate(voxel); }
+};
+
+// Compares how many points of a sample of what is not ground lie on surfaces of the map at two poses. Points of a cell
+// of 1 m fit or not together, so that cells, not points, count as independent.
+class FitComparison {
+ public:
+  FitComparison(const NdtTarget& target, const SourcePoints& source, std::size_t most_points) : target_(target) {
+    const auto ground = static_cast<std::uint8_t>(StructuralLabel::GROUND);
+    const auto ground_count = std::count(source.label.begin(), source.label.end(), ground);
+    const std::size_t stride = 1 + (source.size() - static_cast<std::size_t>(ground_count)) / most_points;
+    std::unordered_map<VoxelCoordinate, std::size_t, CoordinateHash> cells;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < source.size(); ++i) {
+      if (source.label[i] == ground || next++ % stride != 0) continue;
+      points_.emplace_back(source.x[i], source.y[i], source.z[i]);
+      const VoxelCoordinate cell = points_.back().array().floor().cast<int>();
+      cell_of_point_.push_back(cells.try_emplace(cell, cells.size()).first->second);
+    }
+    cell_count_ = cells.size();
   }
-  return sample;
-}
+
+  std::vector<bool> fitsAt(const Eigen::Isometry3d& T_map_source) const {
+    std::vector<bool> fits(points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) fits[i] = liesOnSurface(target_, T_map_source * points_[i]);
+    return fits;
+  }
+
+  // In standard deviations; positive: more lie on surfaces here.
+  double advantage(const std::vector<bool>& here, const std::vector<bool>& there) const {
+    std::vector<double> difference(cell_count_, 0.0);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      difference[cell_of_point_[i]] += (here[i] ? 1.0 : 0.0) - (there[i] ? 1.0 : 0.0);
+    }
+    const double sum = std::accumulate(difference.begin(), difference.end(), 0.0);
+    const double squares = std::inner_product(difference.begin(), difference.end(), difference.begin(), 0.0);
+    return sum / std::sqrt(std::max(1.0, squares));
+  }
+
+ private:
+  const NdtTarget& target_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<std::size_t> cell_of_point_;
+  std::size_t cell_count_ = 0;
+};
 
 // The horizontal direction of greatest variance.
-Eigen::Vector3d leastHeldDirection(const AlignmentResult& alignment) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(alignment.covariance.topLeftCorner<2, 2>());
+Eigen::Vector3d leastHeldDirection(const Matrix6d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance.topLeftCorner<2, 2>());
   return {solver.eigenvectors()(0, 1), solver.eigenvectors()(1, 1), 0.0};
 }
 
 }  // namespace
 
 std::vector<Eigen::Isometry3d> rivalPoses(const NdtTarget& target, const SourcePoints& source,
-                                          const AlignmentResult& alignment, double radius_m, int threads) {
-  const Eigen::Vector3d direction = leastHeldDirection(alignment);
-  SourcePoints sample = scoredSample(source);
-  if (sample.empty()) return {};
+                                          const Eigen::Isometry3d& T_map_source, const Matrix6d& covariance,
+                                          double radius_m, int threads) {
+  const Eigen::Vector3d direction = leastHeldDirection(covariance);
   const double step_m = 0.5 * std::max(1.0, target.resolution());
   const int steps = static_cast<int>(std::ceil(radius_m / step_m));
   std::vector<Eigen::Isometry3d> poses;
   for (int i = -steps; i <= steps; ++i) {
-    poses.push_back(alignment.T_map_source);
+    poses.push_back(T_map_source);
     poses.back().translation() += direction * (i * step_m);
   }
-  const std::vector<Likelihoods> likelihoods = PoseScorer(target, sample).score(poses, threads);
+  const FitComparison comparison(target, source, kSearchedPoints);
+  const std::vector<bool> here = comparison.fitsAt(T_map_source);
+  std::vector<double> advantage_of_here(poses.size());
+  forEachChunk(threads, poses.size(), [&](std::size_t i, int) {
+    advantage_of_here[i] = comparison.advantage(here, comparison.fitsAt(poses[i]));
+  });
 
-  std::vector<std::pair<double, std::size_t>> peaks;
+  std::vector<std::pair<double, std::size_t>> candidates;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double here = likelihoods[i].non_ground;
-    if (i > 0 && likelihoods[i - 1].non_ground > here) continue;
-    if (i + 1 < poses.size() && likelihoods[i + 1].non_ground > here) continue;
+    if (i > 0 && advantage_of_here[i - 1] < advantage_of_here[i]) continue;
+    if (i + 1 < poses.size() && advantage_of_here[i + 1] < advantage_of_here[i]) continue;
     const double away_m = std::abs(static_cast<double>(i) - steps) * step_m;
-    if (away_m >= kOtherPlace_m) peaks.emplace_back(here, i);
+    if (away_m >= kOtherPlace_m) candidates.emplace_back(advantage_of_here[i], i);
   }
-  std::sort(peaks.rbegin(), peaks.rend());
-  if (peaks.size() > kMostRivals) peaks.resize(kMostRivals);
+  std::sort(candidates.begin(), candidates.end());
   std::vector<Eigen::Isometry3d> rivals;
-  for (const auto& [likelihood, i] : peaks) rivals.push_back(poses[i]);
+  for (const auto& [advantage, i] : candidates) {
+    const Eigen::Vector3d& position = poses[i].translation();
+    const bool is_another = std::none_of(rivals.begin(), rivals.end(), [&](const Eigen::Isometry3d& rival) {
+      return (rival.translation() - position).norm() < kRivalsApart_m;
+    });
+    if (is_another) rivals.push_back(poses[i]);
+    if (rivals.size() == kMostRivals) break;
+  }
   return rivals;
 }
 
 double advantage(const NdtTarget& target, const SourcePoints& source, const Eigen::Isometry3d& T_map_source,
                  const Eigen::Isometry3d& T_map_source_rival) {
-  constexpr std::size_t kComparedPoints = 8192;
-  const std::size_t stride = std::max<std::size_t>(1, source.size() / kComparedPoints);
-  const std::vector<bool> here = pointsOnSurfaces(target, source, T_map_source, stride);
-  const std::vector<bool> there = pointsOnSurfaces(target, source, T_map_source_rival, stride);
-  double here_alone = 0.0, there_alone = 0.0;
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    here_alone += here[i] && !there[i] ? 1.0 : 0.0;
-    there_alone += there[i] && !here[i] ? 1.0 : 0.0;
-  }
-  return (here_alone - there_alone) / std::sqrt(std::max(1.0, here_alone + there_alone));
+  const FitComparison comparison(target, source, kComparedPoints);
+  return comparison.advantage(comparison.fitsAt(T_map_source), comparison.fitsAt(T_map_source_rival));
 }
 
 }  // namespace saw_ndt::internal

@@ -58,6 +58,12 @@ Matrix6d inBase(const Matrix6d& in_map, const Eigen::Matrix3d& R_map_base) {
 
 }  // namespace
 
+Matrix6d freeCovariance(const PoseDirections& free_directions) {
+  PoseDirections motions = free_directions;
+  motions.bottomRows<3>() /= kRotationArm_m;
+  return kFreeSigma_m * kFreeSigma_m * motions * motions.transpose();
+}
+
 std::string freeAxes(const PoseDirections& free_directions, const Eigen::Matrix3d& R_map_base) {
   // A direction half way between two axes names both.
   constexpr double kNamedShare = 0.25;

@@ -26,16 +26,21 @@ constexpr double kMaxSquaredMahalanobis = 9.0;
 // or less; in larger ones so much thicker): whatever lies in it fits, and tells nothing.
 constexpr double kMostThickness_m = 0.3;
 
-// The share of the curvature along the normal of a surface that a direction must have to count: that of 6 degrees from
-// the surface. Normals of small voxels are no better known.
+// The share of the curvature along the normal of a surface that a direction must have to count. Normals of small voxels
+// are not known better than to 6 degrees, which the covariance reckons with; along a tunnel or the rails of a bridge
+// all that there is comes from joints and other small things, less than 16 degrees from the surface.
 constexpr double kNegligibleCurvatureShare = 0.01;
+constexpr double kDoubtfulCurvatureShare = 0.08;
 
-// A direction is free where less of its curvature than this is left. Measured: 0.03 in a tunnel without features, 0.35
-// and more along a motorway.
+// A direction is free where less of its curvature than this is beyond doubt. Measured: up to 0.05 in tunnels and 0.09
+// on a bridge, 0.24 and more along a motorway.
 constexpr double kMinHeldShare = 0.15;
 
 // So many points bear as much information as more of them: what remains is the error of the map.
 constexpr double kIndependentPoints = 15000.0;
+
+// Where less of a scan than this is not ground, its overlap is that of all points.
+constexpr double kMinJudgedShare = 0.1;
 
 // A surface whose curvature is vertical by more than this is level.
 constexpr double kLevelSurfaceShare = 0.9;
@@ -46,15 +51,19 @@ struct Motions {
 };
 
 struct SampleSums {
-  Vector6d curvature = Vector6d::Zero();  // along each direction
-  Vector6d held = Vector6d::Zero();       // without what the noise of normals makes
-  std::size_t matched = 0;                // points on a surface
-  std::size_t judged = 0;                 // points that overlap is told of
+  Vector6d curvature = Vector6d::Zero();    // along each direction
+  Vector6d held = Vector6d::Zero();         // without what is negligible
+  Vector6d surely_held = Vector6d::Zero();  // without what is doubtful
+  std::size_t sampled = 0;
+  std::size_t matched = 0;  // points on a surface
+  std::size_t judged = 0;   // points that overlap is told of
   std::size_t judged_and_matched = 0;
 
   SampleSums& operator+=(const SampleSums& other) {
     curvature += other.curvature;
     held += other.held;
+    surely_held += other.surely_held;
+    sampled += other.sampled;
     matched += other.matched;
     judged += other.judged;
     judged_and_matched += other.judged_and_matched;
@@ -117,6 +126,7 @@ class PointSampler {
         T_map_source_.linear() * Eigen::Vector3d(source_.x[point], source_.y[point], source_.z[point]);
     const SurfaceAt surface = surfaceAt(target_.levels(), r + T_map_source_.translation());
     const bool ground = source_.label[point] == static_cast<std::uint8_t>(StructuralLabel::GROUND);
+    ++sums.sampled;
     if (surface.cell == nullptr) {
       sums.judged += ground ? 0 : 1;
       return;
@@ -135,7 +145,9 @@ class PointSampler {
       const Eigen::Vector3d moved = motions_.translation[k] + motions_.rotation[k].cross(r);
       const double along = moved.dot(inverse_covariance * moved);
       sums.curvature[k] += weight * along;
-      sums.held[k] += weight * std::max(0.0, along - kNegligibleCurvatureShare * trace * moved.squaredNorm());
+      const double across = trace * moved.squaredNorm();
+      sums.held[k] += weight * std::max(0.0, along - kNegligibleCurvatureShare * across);
+      sums.surely_held[k] += weight * std::max(0.0, along - kDoubtfulCurvatureShare * across);
     }
   }
 
@@ -176,39 +188,35 @@ void assessAlignment(const NdtTarget& target, const SourcePoints& source, const 
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) sums += of_chunk[chunk];
   }
 
-  result.overlap =
-      sums.judged == 0 ? 0.0 : static_cast<double>(sums.judged_and_matched) / static_cast<double>(sums.judged);
+  // On bare land there is next to nothing but ground to judge by; what it does not hold, free directions tell.
+  const bool judge_ground = static_cast<double>(sums.judged) < kMinJudgedShare * static_cast<double>(sums.sampled);
+  const std::size_t judged = judge_ground ? sums.sampled : sums.judged;
+  const std::size_t matched = judge_ground ? sums.matched : sums.judged_and_matched;
+  result.overlap = judged == 0 ? 0.0 : static_cast<double>(matched) / static_cast<double>(judged);
   const double scale =
       options.covariance_scale * std::max(1.0, static_cast<double>(source.size()) / kIndependentPoints);
   Vector6d variance;
   result.free_directions.resize(6, 0);
   for (int k = 0; k < 6; ++k) {
-    const double share = sums.curvature[k] > 0.0 ? sums.held[k] / sums.curvature[k] : 0.0;
-    const double held = share * curvature.eigenvalues()[k];
+    const double per_curvature = sums.curvature[k] > 0.0 ? curvature.eigenvalues()[k] / sums.curvature[k] : 0.0;
+    const bool is_held = sums.surely_held[k] >= kMinHeldShare * sums.curvature[k];
+    const double held = per_curvature * (is_held ? sums.held[k] : sums.surely_held[k]);
     variance[k] = held > 0.0 ? scale / held : kFreeSigma_m * kFreeSigma_m;
-    if (share >= kMinHeldShare && variance[k] < kFreeSigma_m * kFreeSigma_m) continue;
-    variance[k] = std::max(variance[k], kFreeSigma_m * kFreeSigma_m);
+    if (is_held && variance[k] < kFreeSigma_m * kFreeSigma_m) continue;
     result.free_directions.conservativeResize(6, result.free_directions.cols() + 1);
     result.free_directions.rightCols<1>() = curvature.eigenvectors().col(k);
   }
   const Matrix6d directions = unit.asDiagonal() * curvature.eigenvectors();
-  result.covariance = directions * variance.asDiagonal() * directions.transpose();
-  // On level ground alone there is nothing to judge by: then free directions tell.
-  const bool fits = sums.matched >= kMinMatchedPoints && (sums.judged == 0 || result.overlap >= options.min_overlap);
+  result.covariance =
+      directions * variance.asDiagonal() * directions.transpose() + freeCovariance(result.free_directions);
+  const bool fits = sums.matched >= kMinMatchedPoints && result.overlap >= options.min_overlap;
   if (!fits && (result.converged() || result.status == AlignmentStatus::ITERATION_LIMIT)) {
     result.status = AlignmentStatus::UNDETERMINED;
   }
 }
 
-std::vector<bool> pointsOnSurfaces(const NdtTarget& target, const SourcePoints& source,
-                                   const Eigen::Isometry3d& T_map_source, std::size_t stride) {
-  std::vector<bool> on_surfaces;
-  for (std::size_t i = 0; i < source.size(); i += stride) {
-    if (source.label[i] == static_cast<std::uint8_t>(StructuralLabel::GROUND)) continue;
-    const Eigen::Vector3d p = T_map_source * Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
-    on_surfaces.push_back(surfaceAt(target.levels(), p).fits());
-  }
-  return on_surfaces;
+bool liesOnSurface(const NdtTarget& target, const Eigen::Vector3d& position_m) {
+  return surfaceAt(target.levels(), position_m).fits();
 }
 
 }  // namespace saw_ndt::internal

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
+#include <Eigen/Core>
 
 #include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/registration/alignment.h"
@@ -15,8 +14,7 @@ namespace saw_ndt::internal {
 void assessAlignment(const NdtTarget& target, const SourcePoints& source, const AlignmentOptions& options,
                      AlignmentResult& result);
 
-/// Which of a sample of the source points that are not ground, every `stride`-th of all, lie on a surface of the map.
-std::vector<bool> pointsOnSurfaces(const NdtTarget& target, const SourcePoints& source,
-                                   const Eigen::Isometry3d& T_map_source, std::size_t stride);
+/// Whether a point in the map lies on a surface of it, within three standard deviations.
+bool liesOnSurface(const NdtTarget& target, const Eigen::Vector3d& position_m);
 
 }  // namespace saw_ndt::internal

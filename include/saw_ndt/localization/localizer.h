@@ -105,6 +105,7 @@ class SAW_NDT_EXPORT Localizer {
   Attempt attempt(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
                   const PoseExpectation& expectation);
   Attempt withoutRivals(const SourcePoints& source, const Attempt& found, const PoseExpectation& expectation);
+  void confirmFreeDirections(const SourcePoints& source, AlignmentResult& alignment);
   Attempt find(const SourcePoints& source, const PoseExpectation& expectation);
 
   SourceAligner aligner_;

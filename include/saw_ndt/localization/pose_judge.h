@@ -16,7 +16,7 @@ struct SAW_NDT_EXPORT AcceptanceOptions {
   /// The same of a pose in doubt (PoseJudge::isDoubtful()): right ones have 0.6 and more where the map is true, wrong
   /// ones 0.5 and less, but along a road.
   double min_overlap_in_doubt = 0.45;
-  /// In doubt, least share of the usual overlap of this drive.
+  /// Least share of the usual overlap of this drive of a pose that is vaguely expected or surprising.
   double min_usual_overlap_share = 0.8;
   /// In doubt, other poses along the direction that is held least are tried. One is AMBIGUOUS unless the points that
   /// lie on surfaces of the map at it alone are more than those at any other alone, by so many standard deviations. 0:
@@ -66,6 +66,8 @@ struct PoseExpectation {
   Matrix6d covariance = Matrix6d::Zero();
   double max_correction_m = 0.0;
   double max_correction_deg = 0.0;
+  double search_radius_m = 0.0;  ///< how far along the road the vehicle may be from there, if all is doubted
+  bool vague = false;            ///< nothing much is expected: there is no pose before, or the prediction is unsure
 };
 
 /// Judges the result of an alignment.
@@ -88,12 +90,13 @@ class SAW_NDT_EXPORT PoseJudge {
   bool isSurprising(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                     const PoseExpectation& expectation) const;
 
-  /// Whether a pose that judge() accepts needs a second look: it is surprising, nothing much was expected, or far
-  /// fewer points lie on the map than usual.
+  /// Whether a pose that judge() accepts needs a second look: it is vaguely expected or surprising, or fewer points lie
+  /// on the map than usual.
   bool isDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                   const PoseExpectation& expectation, const TrackState& track) const;
   /// Judges one of those by stricter limits.
-  Acceptance judgeDoubtful(const AlignmentResult& alignment, const TrackState& track) const;
+  Acceptance judgeDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
+                           const PoseExpectation& expectation, const TrackState& track) const;
 
  private:
   AcceptanceOptions options_;

@@ -95,9 +95,6 @@ enum class AlignmentStatus {
   UNDETERMINED,     ///< the pose rests on too few points, or too few of them fit the map
 };
 
-/// The standard deviation of AlignmentResult::covariance along a free direction (m; with kRotationArm_m for rotations).
-constexpr double kFreeSigma_m = 20.0;
-
 /// The status in words: "converged", "iteration limit", ...
 SAW_NDT_EXPORT const char* toString(AlignmentStatus status);
 
@@ -107,6 +104,11 @@ constexpr double kRotationArm_m = 10.0;
 /// Directions of a pose, one a column: translation (m) and rotation (rad) times kRotationArm_m, in the axes of the map.
 /// Orthonormal.
 using PoseDirections = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+
+/// What AlignmentResult::covariance adds along a free direction: a standard deviation of kFreeSigma_m (of a rotation,
+/// of the way of a point kRotationArm_m from its centre).
+constexpr double kFreeSigma_m = 20.0;
+SAW_NDT_EXPORT Matrix6d freeCovariance(const PoseDirections& free_directions);
 
 struct AlignmentResult {
   Eigen::Isometry3d T_map_source = Eigen::Isometry3d::Identity();
@@ -128,13 +130,14 @@ struct AlignmentResult {
   /// Of the pose. The inverse of the curvature, without what points tell of directions nearly parallel to the surface
   /// that they lie on (that is the noise of its normal), and scaled so that it holds on simulated drives with exact
   /// poses; see docs/trust.md. Errors are those of the map mainly: those of successive scans are alike, and more points
-  /// of a scan make them no smaller. Standard deviation along a free direction: kFreeSigma_m or more.
+  /// of a scan make them no smaller. With freeCovariance() added.
   Matrix6d covariance = Matrix6d::Zero();
   /// What the surroundings do not hold, such as the way along a tunnel. The pose keeps there what the guess said, or
   /// comes to a chance optimum near it.
   PoseDirections free_directions = PoseDirections(6, 0);
   /// Share of a sample of the points not labelled ground that lie on a surface of the map, within three standard
-  /// deviations. Where no labels are known, points on level surfaces of the map count as ground. 0 to 1; not a number
+  /// deviations. Where no labels are known, points on level surfaces of the map count as ground; where there
+  /// is next to nothing but ground, of all. 0 to 1; not a number
   /// where it was not told.
   double overlap = std::numeric_limits<double>::quiet_NaN();
 
