@@ -107,16 +107,16 @@ int main(int argc, char** argv) {
       if (!failure.empty()) std::cerr << app.name() << ": " << failure << ": rejected\n";
     }
     const saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
-    if (summary.accepted == 0) {
-      throw saw_ndt::Error(sequence_folder, "",
-                           "no scan was located in " + map_file +
-                               ", the first one for: " + saw_ndt::toString(run.results.front().acceptance));
-    }
     if (sequence.hasPoses() && !summary.metrics) {
       std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
     }
     saw_ndt::writeLocalization(folder.path(), run, summary, options.T_base_lidar, T_camera_lidar);
     folder.keep();
     std::cout << saw_ndt::toJsonText(summary);
+    if (summary.accepted == 0) {
+      throw saw_ndt::Error(sequence_folder, "",
+                           "no scan was located in " + map_file +
+                               ", the first one for: " + saw_ndt::toString(run.results.front().acceptance));
+    }
   });
 }

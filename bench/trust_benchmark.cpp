@@ -41,7 +41,7 @@ struct Arguments {
   std::vector<std::string> kinds = saw_ndt::faultKinds();
   std::string method = "weighted", work;
   int seeds = 3, scans = 200, threads = 0;
-  bool strengths = false;
+  bool strengths = false, trace = false;
 };
 
 /// The map that runs are localized in, and where they start in it unless that follows from the drive.
@@ -80,7 +80,7 @@ saw_ndt::CampaignRun makeRun(const Cell& cell, const saw_ndt::LoadedDrive& drive
 }
 
 TrustCounts play(const saw_ndt::CampaignRun& run, const saw_ndt::LoadedDrive& drive, const Place& place,
-                 const saw_ndt::LocalizationMethod& method, const std::string& name) {
+                 const saw_ndt::LocalizationMethod& method, const std::string& name, bool trace) {
   static std::mutex output;
   saw_ndt::LocalizerOptions options;
   options.method = method;
@@ -98,6 +98,9 @@ TrustCounts play(const saw_ndt::CampaignRun& run, const saw_ndt::LoadedDrive& dr
         points = &altered;
       }
       judge.see(localizer.localize(saw_ndt::viewOf(*points), scan.stamp_s));
+      if (!trace) continue;
+      const std::lock_guard<std::mutex> lock(output);
+      std::cerr << name << ": " << judge.lastInWords() << '\n';
     }
   } catch (const std::exception& error) {
     judge.fail();
@@ -201,7 +204,7 @@ class Campaign {
       const saw_ndt::CampaignRun run = makeRun(cell, drive, arguments_.scans);
       const std::string name =
           scene + ", " + cell.fault->kind + " " + cell.fault->strength + ", seed " + std::to_string(cell.seed);
-      counts[i] = play(run, drive, places.at(cell.fault->map), method_, name);
+      counts[i] = play(run, drive, places.at(cell.fault->map), method_, name, arguments_.trace);
       progress.step();
     });
     for (std::size_t i = 0; i < cells.size(); ++i) of_rows[rowOf(*cells[i].fault)].add(counts[i]);
@@ -242,6 +245,7 @@ int main(int argc, char** argv) {
                 "folder that keeps the simulated drives, 2 to 8 GB a scene, for the next time (default: none is kept)");
   app.addChoice("method", &arguments.method, saw_ndt::LocalizationMethod::names(), "method of the localizer");
   app.addFlag("strengths", &arguments.strengths, "a row for each strength of a fault");
+  app.addFlag("trace", &arguments.trace, "say of every scan what becomes of it");
   return saw_ndt::runApp(argc, argv, app, [&] {
     check(arguments);
     arguments.threads = app.threads();

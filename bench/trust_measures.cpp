@@ -112,11 +112,14 @@ void TrustCounts::add(const TrustCounts& other) {
 }
 
 void RunJudge::see(const LocalizationResult& result) {
-  const int number = static_cast<int>(next_);
+  const int scan_number = static_cast<int>(next_);
   const PlayedScan& scan = run_.scans.at(next_++);
   const PoseDifference published{poseDifference(scan.T_map_lidar, result.T_map_base)};
   const bool wrong = !run_.place_in_map || misleads(published, result.covariance, result.free_directions);
-  if (run_.fault_begin > static_cast<std::size_t>(number)) {
+  last_in_words_ = std::string(toString(result.acceptance)) + ", " + toString(result.track.status) + "; overlap " +
+                   number(result.alignment.overlap, "%.2f") + "; " + inWords(scan_number, result, published) +
+                   (wrong ? "; wrong" : "");
+  if (run_.fault_begin > static_cast<std::size_t>(scan_number)) {
     counts_.astray_before_runs = wrong ? 1 : 0;
     return;
   }
@@ -125,7 +128,7 @@ void RunJudge::see(const LocalizationResult& result) {
     ++counts_.accepted;
     if (scan.shows_nothing) ++counts_.accepted_of_nothing;
     if (wrong) ++counts_.wrong_accepted;
-    if (wrong && first_wrong_accepted_.empty()) first_wrong_accepted_ = inWords(number, result, published);
+    if (wrong && first_wrong_accepted_.empty()) first_wrong_accepted_ = inWords(scan_number, result, published);
     if (run_.place_in_map) {
       counts_.worst_m = std::max(counts_.worst_m, published.distance_m());
       counts_.worst_deg = std::max(counts_.worst_deg, published.angle_deg());
@@ -142,13 +145,13 @@ void RunJudge::see(const LocalizationResult& result) {
   if (!wrong) {
     wrong_since_ = -1;
   } else if (wrong_since_ < 0) {
-    wrong_since_ = number;
+    wrong_since_ = scan_number;
   }
   if (!isLost(result)) return;
   was_lost_ = true;
   if (wrong) {
     counts_.astray_runs = 1;
-    counts_.scans_until_lost.push_back(number - wrong_since_);
+    counts_.scans_until_lost.push_back(scan_number - wrong_since_);
   } else {
     counts_.wrongly_lost_runs = 1;
   }

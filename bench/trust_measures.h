@@ -69,13 +69,15 @@ class RunJudge {
   /// The first scan that was accepted wrongly in words: its number, error and standard deviations in the axes of the
   /// base, and what was free; empty for none.
   const std::string& firstWrongAccepted() const { return first_wrong_accepted_; }
+  /// The last scan in the same words, and what became of it.
+  const std::string& lastInWords() const { return last_in_words_; }
 
  private:
   const CampaignRun& run_;
   TrustCounts counts_;
   std::size_t next_ = 0;
   int wrong_since_ = -1;
-  std::string first_wrong_accepted_;
+  std::string first_wrong_accepted_, last_in_words_;
   bool was_lost_ = false;
 };
 

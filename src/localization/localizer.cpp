@@ -103,6 +103,26 @@ struct Localizer::Attempt {
   bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
 };
 
+namespace {
+
+// How far apart poses are different places (m), beside what free directions tell; and the share of the way along these,
+// which may be curved.
+constexpr double kOtherPlace_m = 0.3;
+constexpr double kCurvedShare = 0.1;
+
+// A vehicle that is faster follows the bend of its road (m/s).
+constexpr double kMovingSpeed_mps = 1.0;
+
+bool isElsewhere(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_rival) {
+  Vector6d away = poseDifference(alignment.T_map_source, T_map_rival);
+  away.tail<3>() *= kRotationArm_m;
+  const Eigen::VectorXd along_free = alignment.free_directions.transpose() * away;
+  away -= alignment.free_directions * along_free;
+  return away.norm() > kOtherPlace_m + kCurvedShare * along_free.norm();
+}
+
+}  // namespace
+
 // Little is held for sure along a free direction. It is held all the same where the alignment comes back from both
 // sides.
 void Localizer::confirmFreeDirections(const SourcePoints& source, AlignmentResult& alignment) {
@@ -147,36 +167,57 @@ Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const At
                                             const PoseExpectation& expectation) {
   const double min_advantage_sigmas = options_.acceptance.min_advantage_sigmas;
   if (!target_ || min_advantage_sigmas == 0.0) return found;
-  const int threads = options_.alignment.threads;
-  const auto rivalsAround = [&](const Eigen::Isometry3d& T_map_base, double radius_m) {
-    return rivalPoses(*target_, source, T_map_base, found.alignment.covariance, radius_m, threads);
-  };
-  std::vector<Eigen::Isometry3d> starts = rivalsAround(found.alignment.T_map_source, expectation.search_radius_m);
-  // If the stamp is wrong, the vehicle is still where it was.
-  const Eigen::Isometry3d& T_map_last = prediction_.state().T_map_base;
-  if ((T_map_last.translation() - found.T_map_base.translation()).norm() > expectation.search_radius_m) {
-    constexpr double kNear_m = 10.0;
-    for (const Eigen::Isometry3d& start : rivalsAround(T_map_last, kNear_m)) starts.push_back(start);
+  const Eigen::Isometry3d& T_map_found = found.alignment.T_map_source;
+  const Eigen::Vector3d direction = leastHeldDirection(found.alignment.covariance);
+  SearchedWay way;
+  way.direction = direction;
+  const TrackState& track = prediction_.state();
+  const double speed_mps = (expectation.T_map_base.linear() * track.velocity_base_mps).dot(direction);
+  if (std::abs(speed_mps) > kMovingSpeed_mps) {
+    way.turn_per_m = expectation.T_map_base.linear() * track.turn_rate_base_radps / speed_mps;
   }
-
-  Attempt best = found;
-  bool ambiguous = false;
-  for (const Eigen::Isometry3d& start : starts) {
-    const Attempt rival = attempt(source, start, expectation);
-    // What is free along that way keeps to the same place.
-    const double apart_m = (rival.T_map_base.translation() - best.T_map_base.translation()).norm();
-    if (!rival.alignment.converged()) continue;
-    if (apart_m >= kOtherPlace_m) {
-      const double sigmas = advantage(*target_, source, best.T_map_base, rival.T_map_base);
-      if (std::abs(sigmas) < min_advantage_sigmas) ambiguous = true;
-      if (sigmas < 0.0) best = rival;
-    } else if (best.alignment.free_directions.cols() < rival.alignment.free_directions.cols()) {
-      // A place where the scan fits better, but does not hold, shows that this one only seems to hold.
-      const double sigmas = advantage(*target_, source, best.alignment.T_map_source, rival.alignment.T_map_source);
-      if (sigmas < -min_advantage_sigmas) ambiguous = true;
+  std::vector<Eigen::Isometry3d> starts =
+      rivalStarts(*target_, source, T_map_found, way, expectation.search_radius_m, options_.alignment.threads);
+  if (expectation.any_heading) {
+    for (const double turn_deg : {90.0, 180.0, 270.0}) {
+      starts.push_back(T_map_found);
+      starts.back().linear() = rotationFromVector({0.0, 0.0, radiansFromDegrees(turn_deg)}) * T_map_found.linear();
     }
   }
-  if (ambiguous) best.acceptance = Acceptance::AMBIGUOUS;
+  std::vector<Eigen::Isometry3d> rivals;
+  for (const Eigen::Isometry3d& start : starts) {
+    const AlignmentResult rival = aligner_(source, start);
+    if (rival.converged()) rivals.push_back(rival.T_map_source);
+  }
+
+  const auto advantageOver = [&](const Attempt& here, const Eigen::Isometry3d& T_map_there) {
+    return advantage(*target_, source, here.alignment.T_map_source, T_map_there);
+  };
+  Attempt best = found;
+  for (const Eigen::Isometry3d& rival : rivals) {
+    if (advantageOver(best, rival) <= -min_advantage_sigmas) best = attempt(source, rival, expectation);
+  }
+  const bool ambiguous = std::any_of(rivals.begin(), rivals.end(), [&](const Eigen::Isometry3d& rival) {
+    return isElsewhere(best.alignment, rival) && advantageOver(best, rival) < min_advantage_sigmas;
+  });
+  if (!ambiguous) return best;
+
+  // The scan fits elsewhere as well. That is no harm if it fits where the vehicle is expected along that way.
+  Vector6d free_too = Vector6d::Zero();
+  free_too.head<3>() = direction;
+  PoseDirections& free = best.alignment.free_directions;
+  free_too -= free * (free.transpose() * free_too);
+  constexpr double kAlreadyFree = 0.5;
+  if (free_too.norm() > kAlreadyFree) {
+    free_too.normalize();
+    free.conservativeResize(6, free.cols() + 1);
+    free.rightCols<1>() = free_too;
+    best.alignment.covariance += freeCovariance(free_too);
+    best.T_map_base = keptAlongFreeDirections(expectation.T_map_base, best.alignment.T_map_source, free);
+    best.acceptance = judge_.judge(best.alignment, best.T_map_base, expectation);
+    if (advantageOver(best, best.T_map_base) < min_advantage_sigmas) return best;
+  }
+  best.acceptance = Acceptance::AMBIGUOUS;
   return best;
 }
 
@@ -184,8 +225,9 @@ Localizer::Attempt Localizer::find(const SourcePoints& source, const PoseExpecta
   const TrackState& track = prediction_.state();
   Attempt found = attempt(source, expectation.T_map_base, expectation);
   // The motion may have been a wrong one.
+  constexpr double kAnotherStart_m = 1.0;
   const double away_m = (track.T_map_base.translation() - expectation.T_map_base.translation()).norm();
-  if (!found.accepted() && track.stamp_s && away_m > kOtherPlace_m) {
+  if (!found.accepted() && track.stamp_s && away_m > kAnotherStart_m) {
     const Attempt again = attempt(source, track.T_map_base, expectation);
     if (again.accepted()) found = again;
   }
@@ -222,14 +264,13 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
     result.T_map_base = found.T_map_base;
     result.free_directions = found.alignment.free_directions;
     MeasuredPose pose{found.T_map_base, found.alignment.covariance, found.alignment.free_directions};
-    pose.learn_velocity = !judge_.isSurprising(found.alignment, found.T_map_base, expectation);
+    pose.learn_velocity = !prediction_.isSurprising(pose, stamp_s);
     if (std::isfinite(found.alignment.overlap)) pose.overlap = found.alignment.overlap;
-    prediction_.accept(pose, stamp_s);
-    result.covariance = prediction_.state().covariance;
+    result.covariance = prediction_.accept(pose, stamp_s);
   } else {
     result.T_map_base = result.T_map_base_predicted;
     result.covariance = expectation.covariance;
-    prediction_.reject();
+    prediction_.reject(stamp_s);
   }
   result.track = prediction_.state();
   result.times.total_ms = total.milliseconds();

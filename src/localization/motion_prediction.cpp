@@ -1,5 +1,6 @@
 #include "saw_ndt/localization/motion_prediction.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -14,18 +15,32 @@ namespace {
 // Stamps that differ by less are of one moment (s).
 constexpr double kSameMoment_s = 1e-6;
 
-// A stamp that is further back than this is of a clock that was set anew (s).
+// A stamp that is further back than this, and the last of so many in a row that are not after the last, are of a clock
+// that was set back (s).
 constexpr double kLongestWayBack_s = 1.0;
+constexpr int kMostLateScans = 2;
+
+// After a longer gap the stamp is doubted as much as the scans between are thought to be lost (s). Half of the time is
+// the standard deviation then.
+constexpr double kLongestGap_s = 0.35;
+constexpr double kDoubtfulShare = 0.5;
+
+// How long it may have been to a scan whose stamp is not after the last, beside that, and to one by a clock that was
+// set back, one sigma each (s).
+constexpr double kLateSigma_s = 0.1;
+constexpr double kSetBackSigma_s = 0.5;
 
 // How long an acceleration lasts (s).
 constexpr double kAccelerationTime_s = 10.0;
 
-// Standard deviations of a velocity that is not known: of a vehicle in town (m/s), and of its turns (rad/s).
-constexpr double kUnknownSpeed_mps = 15.0;
+// Standard deviation of a turn rate that is not known, of a vehicle (rad/s).
 constexpr double kUnknownTurnRate_radps = 0.5;
 
 // A pose that is surer than this tells velocities (m).
 constexpr double kSureSigma_m = 0.1;
+
+// The squared Mahalanobis distance of six numbers that one error in a thousand exceeds.
+constexpr double kUnlikelySquaredMahalanobis = 22.5;
 
 // Adding up the recent past of the overlap.
 constexpr double kNewOverlapShare = 0.1;
@@ -71,6 +86,10 @@ Vector6d poseDifference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& 
   return difference;
 }
 
+bool isUnlikely(const Vector6d& error, const Matrix6d& covariance) {
+  return error.dot(covariance.ldlt().solve(error)) > kUnlikelySquaredMahalanobis;
+}
+
 Eigen::Isometry3d keptAlongFreeDirections(const Eigen::Isometry3d& T_map_predicted,
                                           const Eigen::Isometry3d& T_map_aligned,
                                           const PoseDirections& free_directions) {
@@ -89,6 +108,7 @@ void MotionPredictionOptions::check() const {
   checkOption(positive(acceleration_sigma_mps2), "acceleration_sigma_mps2", acceleration_sigma_mps2, "positive");
   checkOption(positive(turn_acceleration_sigma_radps2), "turn_acceleration_sigma_radps2",
               turn_acceleration_sigma_radps2, "positive");
+  checkOption(positive(unknown_speed_sigma_mps), "unknown_speed_sigma_mps", unknown_speed_sigma_mps, "positive");
   checkOption(positive(initial_sigma_m), "initial_sigma_m", initial_sigma_m, "positive");
   checkOption(positive(initial_sigma_deg), "initial_sigma_deg", initial_sigma_deg, "positive");
   checkOption(positive(max_extrapolation_s), "max_extrapolation_s", max_extrapolation_s, "positive");
@@ -100,86 +120,139 @@ MotionPrediction::MotionPrediction(const MotionPredictionOptions& options) : opt
 void MotionPrediction::reset(const Eigen::Isometry3d& T_map_base) {
   requireRigid(T_map_base, "T_map_base");
   state_ = TrackState();
+  late_scans_ = 0;
   state_.status = TrackStatus::TRACKING;
   state_.T_map_base = T_map_base;
   state_.covariance = diagonal(options_.initial_sigma_m, radiansFromDegrees(options_.initial_sigma_deg));
   covariance_.setZero();
   covariance_.block<6, 6>(0, 0) = state_.covariance;
-  covariance_.block<6, 6>(6, 6) = diagonal(kUnknownSpeed_mps, kUnknownTurnRate_radps);
+  covariance_.block<6, 6>(6, 6) = diagonal(options_.unknown_speed_sigma_mps, kUnknownTurnRate_radps);
   covariance_.block<6, 6>(12, 12) = diagonal(options_.acceleration_sigma_mps2, options_.turn_acceleration_sigma_radps2);
 }
 
-double MotionPrediction::elapsed(double stamp_s) const {
-  const double elapsed_s = state_.timeSinceLast(stamp_s).value_or(0.0);
-  if (elapsed_s < -kLongestWayBack_s) return 0.0;
-  return std::min(elapsed_s, options_.max_extrapolation_s);
+// What the stamps say of the time since the last pose, and how far they are believed.
+struct MotionPrediction::Interval {
+  double duration_s = 0.0;   // for which the motion goes on
+  double sigma_s = 0.0;      // of it
+  bool comes_after = false;  // there is a last pose with a stamp, and this one is after it
+  bool set_back = false;     // by another clock than that of the last pose
+  bool too_long = false;     // nothing of the motion is known any more
+};
+
+MotionPrediction::Interval MotionPrediction::intervalTo(double stamp_s) const {
+  Interval interval;
+  const std::optional<double> since_last_s = state_.timeSinceLast(stamp_s);
+  if (!since_last_s) return interval;
+  interval.comes_after = *since_last_s >= kSameMoment_s;
+  interval.set_back = *since_last_s < -kLongestWayBack_s;
+  interval.too_long = *since_last_s > options_.max_extrapolation_s;
+  if (interval.set_back) {
+    interval.sigma_s = kSetBackSigma_s;
+  } else if (interval.too_long) {
+    interval.sigma_s = options_.max_extrapolation_s;
+  } else {
+    interval.duration_s = *since_last_s;
+    if (*since_last_s > kLongestGap_s) interval.sigma_s = kDoubtfulShare * *since_last_s;
+    if (*since_last_s < 0.0) interval.sigma_s = kLateSigma_s - kDoubtfulShare * *since_last_s;
+  }
+  return interval;
 }
 
-MotionPrediction::Covariance MotionPrediction::propagated(double elapsed_s) const {
+MotionPrediction::Covariance MotionPrediction::propagated(const Interval& interval) const {
+  const double duration_s = interval.duration_s;
   Covariance F = Covariance::Identity();
-  F.block<6, 6>(0, 6).diagonal().setConstant(elapsed_s);
-  F.block<6, 6>(0, 12).diagonal().setConstant(0.5 * elapsed_s * elapsed_s);
-  F.block<6, 6>(6, 12).diagonal().setConstant(elapsed_s);
-  const double lasting = std::exp(-std::abs(elapsed_s) / kAccelerationTime_s);
+  F.block<6, 6>(0, 6).diagonal().setConstant(duration_s);
+  F.block<6, 6>(0, 12).diagonal().setConstant(0.5 * duration_s * duration_s);
+  F.block<6, 6>(6, 12).diagonal().setConstant(duration_s);
+  const double lasting = std::exp(-std::abs(duration_s) / kAccelerationTime_s);
   F.block<6, 6>(12, 12).diagonal().setConstant(lasting);
   // A wrong heading leads the motion astray.
-  F.block<3, 3>(0, 3) -= skewSymmetric(state_.T_map_base.linear() * state_.velocity_base_mps * elapsed_s);
+  const Eigen::Matrix3d R = state_.T_map_base.linear();
+  Vector6d velocity;
+  velocity << R * state_.velocity_base_mps, R * state_.turn_rate_base_radps;
+  F.block<3, 3>(0, 3) -= skewSymmetric(velocity.head<3>() * duration_s);
   Covariance result = F * covariance_ * F.transpose();
   result.block<6, 6>(12, 12) = diagonal(options_.acceleration_sigma_mps2, options_.turn_acceleration_sigma_radps2);
+  if (interval.too_long) {
+    result.block<6, 12>(0, 6).setZero();
+    result.block<12, 6>(6, 0).setZero();
+    result.block<6, 6>(6, 12).setZero();
+    result.block<6, 6>(12, 6).setZero();
+    result.block<6, 6>(6, 6) = diagonal(options_.unknown_speed_sigma_mps, kUnknownTurnRate_radps);
+    velocity.setZero();
+  }
+  if (interval.sigma_s > 0.0) {
+    result.topLeftCorner<6, 6>() +=
+        interval.sigma_s * interval.sigma_s * (velocity * velocity.transpose() + result.block<6, 6>(6, 6));
+  }
   return result;
 }
 
-void MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
+bool MotionPrediction::isSurprising(const MeasuredPose& pose, double stamp_s) const {
+  Interval interval = intervalTo(stamp_s);
+  if (!interval.set_back && !interval.too_long) interval.sigma_s = 0.0;
+  return isUnlikely(poseDifference(predict(stamp_s), pose.T_map_base),
+                    propagated(interval).topLeftCorner<6, 6>() + pose.covariance);
+}
+
+Matrix6d MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
   requireRigid(pose.T_map_base, "T_map_base");
   checkOption(std::isfinite(stamp_s), "stamp_s", stamp_s, "finite");
   if (state_.status == TrackStatus::NOT_INITIALIZED) reset(pose.T_map_base);
-  const std::optional<double> since_last_s = state_.timeSinceLast(stamp_s);
-  // A late scan is where the motion says that it was. One that is not shows that the clock was set back.
-  const bool clock_was_set_back =
-      since_last_s.has_value() && (*since_last_s < -kLongestWayBack_s || (*since_last_s < 0.0 && !pose.learn_velocity));
-  state_.status = TrackStatus::TRACKING;
-  state_.rejected_scans = 0;
-  if (since_last_s && !clock_was_set_back && *since_last_s < kSameMoment_s) return;
-
-  const bool comes_after = since_last_s.has_value() && !clock_was_set_back;
-  const Covariance predicted = propagated(elapsed(stamp_s));
+  const Interval interval = intervalTo(stamp_s);
+  const Covariance predicted = propagated(interval);
   const Matrix6d held = projectorOntoHeld(pose.free_directions);
   Eigen::Matrix<double, 18, 6> gain = Eigen::Matrix<double, 18, 6>::Zero();
   gain.topRows<6>() = held;
-  if (comes_after && (pose.learn_velocity || !state_.velocity_known)) {
-    const double elapsed_s = *since_last_s;
+  const bool learns_velocity =
+      interval.comes_after && !interval.too_long && (pose.learn_velocity || !state_.velocity_known);
+  TrackState next = state_;
+  if (learns_velocity) {
+    const double elapsed_s = interval.duration_s;
     const Eigen::Isometry3d T_map_predicted = predict(stamp_s);
     const Eigen::Isometry3d T_last_now = state_.T_map_base.inverse() * pose.T_map_base;
     const Eigen::Vector3d turned = rotationVector(T_last_now.linear());
     Matrix6d velocity_gain = Matrix6d::Identity() / elapsed_s;
     Eigen::Vector3d velocity_mps =
         pose.T_map_base.linear() * (meanRotation(turned).inverse() * T_last_now.translation() / elapsed_s);
-    if (state_.velocity_known) {
-      // Where the last pose was unsure, such as along a tunnel that has ended, the way from it does not tell the
-      // velocity; what is known of how position and velocity went wrong together does (the Kalman gain).
-      const Eigen::Vector3d innovation = pose.T_map_base.translation() - T_map_predicted.translation();
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> last(state_.covariance.topLeftCorner<3, 3>());
-      for (int k = 0; k < 3; ++k) {
-        if (last.eigenvalues()[k] < kSureSigma_m * kSureSigma_m) continue;
-        const Eigen::Vector3d u = last.eigenvectors().col(k);
-        const double position_variance =
-            u.dot((predicted.topLeftCorner<3, 3>() + pose.covariance.topLeftCorner<3, 3>()) * u);
-        const double kalman_gain = u.dot(predicted.block<3, 3>(6, 0) * u) / position_variance;
-        velocity_gain.topLeftCorner<3, 3>() += (kalman_gain - 1.0 / elapsed_s) * u * u.transpose();
-        velocity_mps += (kalman_gain - 1.0 / elapsed_s) * u * u.dot(innovation);
-      }
+    // Where the last pose was unsure, such as along a tunnel that has ended, the way from it does not tell the
+    // velocity; what is known of how position and velocity went wrong together does (the Kalman gain).
+    const Eigen::Vector3d innovation = pose.T_map_base.translation() - T_map_predicted.translation();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> last(state_.covariance.topLeftCorner<3, 3>());
+    for (int k = 0; k < 3; ++k) {
+      if (last.eigenvalues()[k] < kSureSigma_m * kSureSigma_m) continue;
+      const Eigen::Vector3d u = last.eigenvectors().col(k);
+      const double position_variance =
+          u.dot((predicted.topLeftCorner<3, 3>() + pose.covariance.topLeftCorner<3, 3>()) * u);
+      const double kalman_gain = u.dot(predicted.block<3, 3>(6, 0) * u) / position_variance;
+      velocity_gain.topLeftCorner<3, 3>() += (kalman_gain - 1.0 / elapsed_s) * u * u.transpose();
+      velocity_mps += (kalman_gain - 1.0 / elapsed_s) * u * u.dot(innovation);
     }
     gain.middleRows<6>(6) = velocity_gain * held;
-    state_.velocity_base_mps = pose.T_map_base.linear().transpose() * velocity_mps;
-    state_.turn_rate_base_radps = turned / elapsed_s;
-    state_.velocity_known = true;
-    state_.velocity_base_mps = bounded(state_.velocity_base_mps, options_.max_speed_mps);
-    state_.turn_rate_base_radps = bounded(state_.turn_rate_base_radps, options_.max_turn_rate_radps);
+    next.velocity_base_mps = bounded(pose.T_map_base.linear().transpose() * velocity_mps, options_.max_speed_mps);
+    next.turn_rate_base_radps = bounded(turned / elapsed_s, options_.max_turn_rate_radps);
+    next.velocity_known = true;
+  }
+  if (interval.too_long) {
+    next.velocity_base_mps.setZero();
+    next.turn_rate_base_radps.setZero();
+    next.velocity_known = false;
   }
   Covariance remaining = Covariance::Identity();
   remaining.leftCols<6>() -= gain;
-  covariance_ = remaining * predicted * remaining.transpose() + gain * pose.covariance * gain.transpose();
+  const Covariance updated = remaining * predicted * remaining.transpose() + gain * pose.covariance * gain.transpose();
 
+  state_.status = TrackStatus::TRACKING;
+  state_.rejected_scans = 0;
+  const bool is_late = state_.stamp_s && !interval.comes_after && !interval.set_back && pose.learn_velocity;
+  late_scans_ = is_late ? late_scans_ + 1 : 0;
+  if (is_late && late_scans_ <= kMostLateScans) return updated.topLeftCorner<6, 6>();
+
+  late_scans_ = 0;
+  covariance_ = updated;
+  state_.velocity_base_mps = next.velocity_base_mps;
+  state_.turn_rate_base_radps = next.turn_rate_base_radps;
+  state_.velocity_known = next.velocity_known;
   state_.T_map_base = pose.T_map_base;
   state_.covariance = covariance_.topLeftCorner<6, 6>();
   state_.stamp_s = stamp_s;
@@ -187,12 +260,25 @@ void MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
     state_.usual_overlap =
         *pose.overlap * kNewOverlapShare + state_.usual_overlap.value_or(*pose.overlap) * (1.0 - kNewOverlapShare);
   }
+  return state_.covariance;
 }
 
-void MotionPrediction::reject() {
+void MotionPrediction::reject(double stamp_s) {
   if (state_.status == TrackStatus::NOT_INITIALIZED) return;
   ++state_.rejected_scans;
   state_.status = state_.rejected_scans >= options_.lost_after_scans ? TrackStatus::LOST : TrackStatus::COASTING;
+  if (!std::isfinite(stamp_s)) return;
+  if (!state_.stamp_s) state_.stamp_s = stamp_s;
+  const Interval interval = intervalTo(stamp_s);
+  late_scans_ = interval.comes_after || stamp_s == *state_.stamp_s ? 0 : late_scans_ + 1;
+  if (!interval.set_back && late_scans_ <= kMostLateScans) return;
+  // The clock was set back: how long it has been since the last pose is known no more.
+  Interval unknown;
+  unknown.sigma_s = kSetBackSigma_s;
+  covariance_ = propagated(unknown);
+  state_.covariance = covariance_.topLeftCorner<6, 6>();
+  state_.stamp_s = stamp_s;
+  late_scans_ = 0;
 }
 
 Eigen::Isometry3d MotionPrediction::predict(double stamp_s) const {
@@ -200,18 +286,18 @@ Eigen::Isometry3d MotionPrediction::predict(double stamp_s) const {
   if (state_.status == TrackStatus::NOT_INITIALIZED) {
     throw std::logic_error("no initial pose: setInitialPose() has not been called");
   }
-  const double elapsed_s = elapsed(stamp_s);
-  if (!state_.velocity_known || elapsed_s == 0.0) return state_.T_map_base;
+  const double duration_s = intervalTo(stamp_s).duration_s;
+  if (!state_.velocity_known || duration_s == 0.0) return state_.T_map_base;
   Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();
-  const Eigen::Vector3d turned = state_.turn_rate_base_radps * elapsed_s;
-  T_last_next.translation() = meanRotation(turned) * state_.velocity_base_mps * elapsed_s;
+  const Eigen::Vector3d turned = state_.turn_rate_base_radps * duration_s;
+  T_last_next.translation() = meanRotation(turned) * state_.velocity_base_mps * duration_s;
   T_last_next.linear() = rotationFromVector(turned);
   return normalizedRotation(state_.T_map_base * T_last_next);
 }
 
 Matrix6d MotionPrediction::predictedCovariance(double stamp_s) const {
   checkOption(std::isfinite(stamp_s), "stamp_s", stamp_s, "finite");
-  return propagated(elapsed(stamp_s)).topLeftCorner<6, 6>();
+  return propagated(intervalTo(stamp_s)).topLeftCorner<6, 6>();
 }
 
 }  // namespace saw_ndt

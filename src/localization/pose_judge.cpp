@@ -1,6 +1,5 @@
 #include "saw_ndt/localization/pose_judge.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -15,13 +14,13 @@ namespace {
 // A vehicle that brakes as hard as it can (m/s^2).
 constexpr double kHardestAcceleration_mps2 = 10.0;
 
-// The squared Mahalanobis distance of six numbers that one pose in a thousand exceeds by chance.
-constexpr double kSurprisingSquaredMahalanobis = 22.5;
-
 // How far an error may reach.
 constexpr double kSigmas = 3.0;
 
-// A prediction less sure than this does not tell one place of a road from the next (m), nor one heading from another.
+// A prediction less sure than this does not tell the right pose from one next to it (m).
+constexpr double kUnsureSigma_m = 0.3;
+
+// One less sure than this does not tell one place of a road from the next (m), nor one heading from another.
 constexpr double kVagueSigma_m = 1.0;
 constexpr double kVagueSigma_rad = 0.3;
 
@@ -30,25 +29,39 @@ constexpr double kVagueSigma_rad = 0.3;
 constexpr double kLessThanUsual = 0.93;
 constexpr double kMuchLessThanUsual = 0.7;
 
-// Without a pose for longer, predictions are doubted (s).
-constexpr double kLongestGap_s = 0.35;
-
-// In doubt, so far along the road is looked for rivals at least (m).
+// In doubt, so far along the road is looked for rivals at least and at most (m).
 constexpr double kLeastSearchRadius_m = 5.0;
+constexpr double kGreatestSearchRadius_m = 300.0;
+
+// On bare land two positions and the heading are free. Where height, roll or pitch are by more than this share, it is
+// not even the ground that is seen.
+constexpr double kMostFreeShareOffTheGround = 0.25;
+
+// Where so many directions are free, the others are not held by much: less than the usual overlap is too little.
+constexpr Eigen::Index kManyFreeDirections = 2;
 
 double largestSigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
-// The covariance without what is free.
-Matrix6d heldCovariance(const AlignmentResult& alignment) {
+// What is left of a covariance when it is projected in lengths, as PoseDirections are.
+Matrix6d projected(const Matrix6d& covariance, const Matrix6d& projector) {
   Vector6d arm = Vector6d::Ones();
   arm.tail<3>().setConstant(kRotationArm_m);
-  const PoseDirections& free = alignment.free_directions;
-  const Matrix6d held = Matrix6d::Identity() - free * free.transpose();
-  const Matrix6d in_lengths = held * arm.asDiagonal() * alignment.covariance * arm.asDiagonal() * held;
+  const Matrix6d in_lengths = projector * arm.asDiagonal() * covariance * arm.asDiagonal() * projector;
   return arm.cwiseInverse().asDiagonal() * in_lengths * arm.cwiseInverse().asDiagonal();
+}
+
+Matrix6d onto(const PoseDirections& directions) { return directions * directions.transpose(); }
+
+bool fitsWorse(const AlignmentResult& alignment, const TrackState& track) {
+  return alignment.overlap < kLessThanUsual * track.usual_overlap.value_or(0.0);
+}
+
+// The covariance without what is free.
+Matrix6d heldCovariance(const AlignmentResult& alignment) {
+  return projected(alignment.covariance, Matrix6d::Identity() - onto(alignment.free_directions));
 }
 
 }  // namespace
@@ -62,8 +75,9 @@ void AcceptanceOptions::check() const {
   checkOption(min_advantage_sigmas >= 0.0, "min_advantage_sigmas", min_advantage_sigmas, "0 or more");
   checkOption(max_correction_m > 0.0, "max_correction_m", max_correction_m, "positive");
   checkOption(max_correction_deg > 0.0, "max_correction_deg", max_correction_deg, "positive");
-  checkOption(max_unknown_speed_mps >= 0.0, "max_unknown_speed_mps", max_unknown_speed_mps, "0 or more");
   checkOption(max_sigma_m > 0.0, "max_sigma_m", max_sigma_m, "positive");
+  checkOption(max_free_sigma_m > 0.0, "max_free_sigma_m", max_free_sigma_m, "positive");
+  checkOption(max_free_sigma_deg > 0.0, "max_free_sigma_deg", max_free_sigma_deg, "positive");
 }
 
 const char* toString(Acceptance acceptance) {
@@ -99,12 +113,10 @@ PoseJudge::PoseJudge(const AcceptanceOptions& options) : options_(options) { opt
 
 PoseExpectation PoseJudge::expect(const Eigen::Isometry3d& T_map_base_predicted, const Matrix6d& covariance,
                                   const TrackState& track, double stamp_s, double max_turn_rate_radps) const {
-  const double since_last_s = track.timeSinceLast(stamp_s).value_or(0.0);
-  const double elapsed_s = std::abs(since_last_s);
+  const double elapsed_s = std::abs(track.timeSinceLast(stamp_s).value_or(0.0));
   const double sigma_m = largestSigma(covariance.topLeftCorner<3, 3>());
   const double sigma_rad = largestSigma(covariance.bottomRightCorner<3, 3>());
-  const double way_m = track.velocity_known ? 0.5 * kHardestAcceleration_mps2 * elapsed_s * elapsed_s
-                                            : options_.max_unknown_speed_mps * elapsed_s;
+  const double way_m = 0.5 * kHardestAcceleration_mps2 * elapsed_s * elapsed_s;
   PoseExpectation expectation;
   expectation.T_map_base = T_map_base_predicted;
   expectation.covariance = covariance;
@@ -112,16 +124,12 @@ PoseExpectation PoseJudge::expect(const Eigen::Isometry3d& T_map_base_predicted,
   expectation.max_correction_deg =
       std::max({options_.max_correction_deg,
                 degreesFromRadians(std::max(max_turn_rate_radps * elapsed_s, kSigmas * sigma_rad))});
-  // Over a gap, or back in time, it may as well be the stamp that is wrong, and the whole way with it.
-  const double predicted_way_m = (T_map_base_predicted.translation() - track.T_map_base.translation()).norm();
-  const bool wrong_stamp = since_last_s < 0.0 || since_last_s > kLongestGap_s;
-  if (wrong_stamp) expectation.max_correction_m = std::max(expectation.max_correction_m, 1.2 * predicted_way_m);
   const bool anywhere = !track.stamp_s || track.status == TrackStatus::LOST;
-  expectation.search_radius_m = anywhere
-                                    ? kSigmas * kFreeSigma_m
-                                    : std::clamp(std::max(kSigmas * sigma_m, wrong_stamp ? 1.2 * predicted_way_m : 0.0),
-                                                 kLeastSearchRadius_m, kSigmas * kFreeSigma_m);
-  expectation.vague = anywhere || wrong_stamp || sigma_m > kVagueSigma_m || sigma_rad > kVagueSigma_rad;
+  expectation.search_radius_m =
+      std::clamp(kSigmas * sigma_m, anywhere ? kSigmas * kFreeSigma_m : kLeastSearchRadius_m, kGreatestSearchRadius_m);
+  expectation.unsure = sigma_m > kUnsureSigma_m;
+  expectation.any_heading = kSigmas * sigma_rad > 0.5 * kPi;
+  expectation.vague = anywhere || sigma_m > kVagueSigma_m || sigma_rad > kVagueSigma_rad;
   return expectation;
 }
 
@@ -133,7 +141,14 @@ Acceptance PoseJudge::judge(const AlignmentResult& alignment, const Eigen::Isome
   if (!alignment.converged()) return Acceptance::NOT_CONVERGED;
   if (!(alignment.likelihoods.unweighted >= options_.min_likelihood)) return Acceptance::LOW_LIKELIHOOD;
   if (alignment.overlap < options_.min_overlap) return Acceptance::LOW_OVERLAP;
-  if (alignment.free_directions.cols() == 6) return Acceptance::UNDETERMINED;
+  if (alignment.free_directions.middleRows<3>(2).squaredNorm() > kMostFreeShareOffTheGround) {
+    return Acceptance::UNDETERMINED;
+  }
+  const Matrix6d kept = projected(expectation.covariance, onto(alignment.free_directions));
+  if (largestSigma(kept.topLeftCorner<3, 3>()) > options_.max_free_sigma_m ||
+      degreesFromRadians(largestSigma(kept.bottomRightCorner<3, 3>())) > options_.max_free_sigma_deg) {
+    return Acceptance::UNDETERMINED;
+  }
   if (largestSigma(heldCovariance(alignment).topLeftCorner<3, 3>()) > options_.max_sigma_m) {
     return Acceptance::UNDETERMINED;
   }
@@ -145,19 +160,21 @@ Acceptance PoseJudge::judge(const AlignmentResult& alignment, const Eigen::Isome
 
 bool PoseJudge::isSurprising(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                              const PoseExpectation& expectation) const {
-  const Vector6d surprise = poseDifference(expectation.T_map_base, T_map_base);
-  const Matrix6d covariance = expectation.covariance + heldCovariance(alignment);
-  return surprise.dot(covariance.ldlt().solve(surprise)) > kSurprisingSquaredMahalanobis;
+  return isUnlikely(poseDifference(expectation.T_map_base, T_map_base),
+                    expectation.covariance + heldCovariance(alignment));
 }
 
 bool PoseJudge::isDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                            const PoseExpectation& expectation, const TrackState& track) const {
-  const bool fits_worse = alignment.overlap < kLessThanUsual * track.usual_overlap.value_or(0.0);
-  return expectation.vague || fits_worse || isSurprising(alignment, T_map_base, expectation);
+  return expectation.vague || expectation.unsure || fitsWorse(alignment, track) ||
+         isSurprising(alignment, T_map_base, expectation);
 }
 
 Acceptance PoseJudge::judgeDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                                     const PoseExpectation& expectation, const TrackState& track) const {
+  if (fitsWorse(alignment, track) && alignment.free_directions.cols() >= kManyFreeDirections) {
+    return Acceptance::UNDETERMINED;
+  }
   const bool unexpected = expectation.vague || isSurprising(alignment, T_map_base, expectation);
   const double usual_share = unexpected ? options_.min_usual_overlap_share : kMuchLessThanUsual;
   const double least = std::max(unexpected ? options_.min_overlap_in_doubt : options_.min_overlap,

@@ -15,10 +15,14 @@
 namespace saw_ndt::internal {
 namespace {
 
-constexpr std::size_t kSearchedPoints = 1500;
+// So many points are looked at each place within the first radius; fewer where it is larger, for the same time.
+constexpr double kSearchedPoints = 1500.0;
+constexpr double kSearchedRadius_m = 60.0;
+constexpr double kLeastSearchedPoints = 300.0;
 constexpr std::size_t kComparedPoints = 6000;
 constexpr std::size_t kMostRivals = 4;
 constexpr double kRivalsApart_m = 2.0;
+constexpr double kNearRivals_m[] = {-1.2, -0.6, 0.6, 1.2};
 
 struct CoordinateHash {
   std::size_t operator()(const VoxelCoordinate& voxel) const { return hashCoordinate(voxel); }
@@ -67,26 +71,32 @@ class FitComparison {
   std::size_t cell_count_ = 0;
 };
 
-// The horizontal direction of greatest variance.
+Eigen::Isometry3d movedOn(const Eigen::Isometry3d& T_map_source, const SearchedWay& way, double distance_m) {
+  const Eigen::Vector3d turned = way.turn_per_m * distance_m;
+  Eigen::Isometry3d T = T_map_source;
+  T.translation() += meanRotation(turned) * way.direction * distance_m;
+  T.linear() = rotationFromVector(turned) * T_map_source.linear();
+  return T;
+}
+
+}  // namespace
+
 Eigen::Vector3d leastHeldDirection(const Matrix6d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance.topLeftCorner<2, 2>());
   return {solver.eigenvectors()(0, 1), solver.eigenvectors()(1, 1), 0.0};
 }
 
-}  // namespace
-
-std::vector<Eigen::Isometry3d> rivalPoses(const NdtTarget& target, const SourcePoints& source,
-                                          const Eigen::Isometry3d& T_map_source, const Matrix6d& covariance,
-                                          double radius_m, int threads) {
-  const Eigen::Vector3d direction = leastHeldDirection(covariance);
+std::vector<Eigen::Isometry3d> rivalStarts(const NdtTarget& target, const SourcePoints& source,
+                                           const Eigen::Isometry3d& T_map_source, const SearchedWay& way,
+                                           double radius_m, int threads) {
   const double step_m = 0.5 * std::max(1.0, target.resolution());
   const int steps = static_cast<int>(std::ceil(radius_m / step_m));
   std::vector<Eigen::Isometry3d> poses;
   for (int i = -steps; i <= steps; ++i) {
-    poses.push_back(T_map_source);
-    poses.back().translation() += direction * (i * step_m);
+    poses.push_back(movedOn(T_map_source, way, i * step_m));
   }
-  const FitComparison comparison(target, source, kSearchedPoints);
+  const double points = std::max(kLeastSearchedPoints, kSearchedPoints * std::min(1.0, kSearchedRadius_m / radius_m));
+  const FitComparison comparison(target, source, static_cast<std::size_t>(points));
   const std::vector<bool> here = comparison.fitsAt(T_map_source);
   std::vector<double> advantage_of_here(poses.size());
   forEachChunk(threads, poses.size(), [&](std::size_t i, int) {
@@ -98,7 +108,7 @@ std::vector<Eigen::Isometry3d> rivalPoses(const NdtTarget& target, const SourceP
     if (i > 0 && advantage_of_here[i - 1] < advantage_of_here[i]) continue;
     if (i + 1 < poses.size() && advantage_of_here[i + 1] < advantage_of_here[i]) continue;
     const double away_m = std::abs(static_cast<double>(i) - steps) * step_m;
-    if (away_m >= kOtherPlace_m) candidates.emplace_back(advantage_of_here[i], i);
+    if (away_m >= kRivalsApart_m) candidates.emplace_back(advantage_of_here[i], i);
   }
   std::sort(candidates.begin(), candidates.end());
   std::vector<Eigen::Isometry3d> rivals;
@@ -109,6 +119,9 @@ std::vector<Eigen::Isometry3d> rivalPoses(const NdtTarget& target, const SourceP
     });
     if (is_another) rivals.push_back(poses[i]);
     if (rivals.size() == kMostRivals) break;
+  }
+  for (const double away_m : kNearRivals_m) {
+    rivals.push_back(movedOn(T_map_source, way, away_m));
   }
   return rivals;
 }

@@ -113,7 +113,9 @@ TEST_F(LocalizeApp, WritesWhatTheContractSays) {
 
 TEST_F(LocalizeApp, RejectedScansAreListedWithTheirReason) {
   buildMap();
-  ASSERT_EQ(localize("-skip 0 -min-likelihood 50").exit_code, 0);
+  const AppResult result = localize("-skip 0 -min-likelihood 50");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.errors.find("lost at scan 2"), std::string::npos) << result.errors;
   EXPECT_EQ(summary().at("rejected"), 6);
   EXPECT_NE(frames()[6].find("5,0.500000000,0,low likelihood,1,"), std::string::npos) << frames()[6];
 }

@@ -89,21 +89,95 @@ TEST(MotionPrediction, IsTheLastPoseBeforeThereAreTwo) {
   expectSamePose(prediction.predict(6.0), poseAt(2.0, 2.0, 1.0), 1e-15);
 }
 
-TEST(MotionPrediction, StampsThatDoNotGrowLeaveTheVelocityUnknown) {
-  for (const double second_s : {1.0, 0.5}) {
-    MotionPrediction prediction;
-    prediction.accept(poseAt(0.0, 0.0, 0.0), 0.9);
-    prediction.accept(poseAt(1.0, 0.0, 0.0), 1.0);
-    EXPECT_TRUE(prediction.state().velocity_known);
-    // Before or at the last stamp there is nothing to predict.
-    expectSamePose(prediction.predict(1.0), poseAt(1.0, 0.0, 0.0), 1e-15);
-    expectSamePose(prediction.predict(0.2), poseAt(1.0, 0.0, 0.0), 1e-15);
-    prediction.accept(poseAt(3.0, 0.0, 0.0), second_s);
-    EXPECT_FALSE(prediction.state().velocity_known);
-    expectSamePose(prediction.predict(2.0), poseAt(3.0, 0.0, 0.0), 1e-15);
-    prediction.accept(poseAt(4.0, 0.0, 0.0), second_s + 1.0);
-    expectSamePose(prediction.predict(second_s + 2.0), poseAt(5.0, 0.0, 0.0), 1e-12);
+/// 10 m/s along x, the last pose at (1, 0) and 1 s.
+MotionPrediction underWay() {
+  MotionPrediction prediction;
+  prediction.accept(poseAt(0.0, 0.0, 0.0), 0.9);
+  prediction.accept(poseAt(1.0, 0.0, 0.0), 1.0);
+  EXPECT_TRUE(prediction.state().velocity_known);
+  return prediction;
+}
+
+TEST(MotionPrediction, ALateScanIsWhereTheVehicleWasAndAddsNothing) {
+  for (const double late_s : {0.0, 0.1, 0.9}) {
+    MotionPrediction prediction = underWay();
+    const Eigen::Isometry3d was_at = poseAt(1.0 - 10.0 * late_s, 0.0, 0.0);
+    expectSamePose(prediction.predict(1.0 - late_s), was_at, 1e-12);
+    const MeasuredPose pose{was_at};
+    EXPECT_FALSE(prediction.isSurprising(pose, 1.0 - late_s));
+    prediction.accept(pose, 1.0 - late_s);
+    expectSamePose(prediction.predict(1.1), poseAt(2.0, 0.0, 0.0), 1e-12);
   }
+}
+
+TEST(MotionPrediction, AClockThatIsSetBackIsFollowed) {
+  // By more than a second: at once. The velocity is kept.
+  MotionPrediction prediction = underWay();
+  expectSamePose(prediction.predict(-5.0), poseAt(1.0, 0.0, 0.0), 1e-15);
+  EXPECT_GT(3.0 * std::sqrt(prediction.predictedCovariance(-5.0)(0, 0)), 10.0);  // of the way of a second
+  prediction.accept(poseAt(2.0, 0.0, 0.0), -5.0);
+  expectSamePose(prediction.predict(-4.9), poseAt(3.0, 0.0, 0.0), 1e-12);
+
+  // By less: where the vehicle could not have been at that time.
+  prediction = underWay();
+  MeasuredPose pose{poseAt(2.0, 0.0, 0.0)};
+  EXPECT_TRUE(prediction.isSurprising(pose, 0.2));
+  pose.learn_velocity = false;
+  prediction.accept(pose, 0.2);
+  expectSamePose(prediction.predict(0.3), poseAt(3.0, 0.0, 0.0), 1e-12);
+
+  // Or where scans do not tell how far it came, at the third in a row. The covariance holds where it may be.
+  prediction = underWay();
+  const PoseDirections along_x = Vector6d::Unit(0);
+  for (const double stamp_s : {0.2, 0.3, 0.4}) {
+    prediction.accept({prediction.predict(stamp_s), Matrix6d::Zero(), along_x}, stamp_s);
+  }
+  EXPECT_EQ(prediction.state().stamp_s, 0.4);
+  const double true_x_m = 4.0, x_m = prediction.state().T_map_base.translation().x();
+  EXPECT_NEAR(x_m, -5.0, 1e-9);
+  EXPECT_GT(3.0 * std::sqrt(prediction.state().covariance(0, 0)), true_x_m - x_m);
+}
+
+TEST(MotionPrediction, AGapIsDoubted) {
+  // A second without scans, or a stamp that is a second too late: both are held by the covariance.
+  MotionPrediction prediction = underWay();
+  expectSamePose(prediction.predict(2.1), poseAt(12.0, 0.0, 0.0), 1e-12);
+  EXPECT_GT(3.0 * std::sqrt(prediction.predictedCovariance(2.1)(0, 0)), 10.0);
+  EXPECT_LT(std::sqrt(prediction.predictedCovariance(2.1)(1, 1)), 2.0);
+  MeasuredPose pose{poseAt(2.0, 0.0, 0.0)};
+  EXPECT_TRUE(prediction.isSurprising(pose, 2.1)) << "the stamp, or the vehicle braked with 20 m/s^2";
+  EXPECT_FALSE(prediction.isSurprising({poseAt(11.0, 0.0, 0.0)}, 2.1));
+  pose.learn_velocity = false;
+  prediction.accept(pose, 2.1);
+  expectSamePose(prediction.predict(2.2), poseAt(3.0, 0.0, 0.0), 1e-12);
+}
+
+TEST(MotionPrediction, AfterALongTimeTheMotionIsUnknown) {
+  MotionPrediction prediction = underWay();
+  expectSamePose(prediction.predict(3601.0), poseAt(1.0, 0.0, 0.0), 1e-15);
+  prediction.accept(poseAt(2.0, 0.0, 0.0), 3601.0);
+  EXPECT_FALSE(prediction.state().velocity_known);
+  EXPECT_GT(3.0 * std::sqrt(prediction.predictedCovariance(3601.1)(0, 0)), 4.0);  // 40 m/s
+  prediction.accept(poseAt(3.0, 0.0, 0.0), 3601.1);
+  expectSamePose(prediction.predict(3601.2), poseAt(4.0, 0.0, 0.0), 1e-9);
+}
+
+TEST(MotionPrediction, FreeDirectionsKeepThePredictionAndItsUncertainty) {
+  MotionPrediction prediction = underWay();
+  const PoseDirections along_x = Vector6d::Unit(0);
+  double sigma_m = 0.0;
+  for (int scan = 1; scan <= 20; ++scan) {
+    const double stamp_s = 1.0 + 0.1 * scan;
+    const Eigen::Isometry3d aligned = poseAt(1.0 + 0.4 * scan, 0.0, 0.0);
+    const Eigen::Isometry3d kept = keptAlongFreeDirections(prediction.predict(stamp_s), aligned, along_x);
+    expectSamePose(kept, poseAt(1.0 + 1.0 * scan, 0.0, 0.0), 1e-9);
+    const Matrix6d covariance = prediction.accept({kept, Matrix6d::Zero(), along_x}, stamp_s);
+    EXPECT_GT(std::sqrt(covariance(0, 0)), sigma_m);
+    EXPECT_LT(std::sqrt(covariance(1, 1)), 1e-6);
+    sigma_m = std::sqrt(covariance(0, 0));
+  }
+  EXPECT_GT(sigma_m, 0.5 * 3.0 * 2.0 * 2.0 * 0.9);  // what an acceleration of 3 m/s^2 does in 2 s
+  EXPECT_LT(sigma_m, 0.5 * 3.0 * 2.0 * 2.0 * 1.5);
 }
 
 TEST(MotionPrediction, ResetForgets) {
@@ -124,16 +198,16 @@ TEST(MotionPrediction, KnowsNothingBeforeAPoseIsGiven) {
   expectThrows<std::logic_error>([&] { prediction.predict(5.0); }, {"initial pose", "setInitialPose()"});
 }
 
-TEST(MotionPrediction, CoastsWhileScansAreRejected) {
+TEST(MotionPrediction, CoastsWhileScansAreRejectedAndIsLostAfterThree) {
   MotionPrediction prediction;
-  prediction.reject();
+  prediction.reject(0.5);
   EXPECT_EQ(prediction.state().status, TrackStatus::NOT_INITIALIZED);
   prediction.accept(poseAt(0.0, 0.0, 0.0), 0.0);
   prediction.accept(poseAt(1.0, 0.0, 0.0), 0.1);
   EXPECT_EQ(prediction.state().status, TrackStatus::TRACKING);
   for (int scan = 1; scan <= 3; ++scan) {
-    prediction.reject();
-    EXPECT_EQ(prediction.state().status, TrackStatus::COASTING);
+    prediction.reject(0.5);
+    EXPECT_EQ(prediction.state().status, scan < 3 ? TrackStatus::COASTING : TrackStatus::LOST);
     EXPECT_EQ(prediction.state().rejected_scans, scan);
   }
   expectSamePose(prediction.predict(0.4), poseAt(4.0, 0.0, 0.0), 1e-12);
@@ -166,6 +240,12 @@ TEST(MotionPrediction, RefusesWhatIsNotFinite) {
     options = {};
     options.max_turn_rate_radps = value;
     expectThrows<std::invalid_argument>([&] { MotionPrediction{options}; }, {"max_turn_rate_radps = "});
+    options = {};
+    options.initial_sigma_m = value;
+    expectThrows<std::invalid_argument>([&] { MotionPrediction{options}; }, {"initial_sigma_m = "});
+    options = {};
+    options.max_extrapolation_s = value;
+    expectThrows<std::invalid_argument>([&] { MotionPrediction{options}; }, {"max_extrapolation_s = "});
   }
 }
 

@@ -66,7 +66,7 @@ TEST_F(PclNdtTest, AMountedLidar) {
 
 TEST_F(PclNdtTest, FarCorrectionsAreRejectedAndThePredictionStays) {
   options.acceptance.max_correction_m = 0.1;
-  options.acceptance.max_unknown_speed_mps = 0.0;
+  options.prediction.initial_sigma_m = 0.1;
   Localizer localizer = this->localizer();
   Eigen::Isometry3d T_start = drive.T_map_lidar[0];
   T_start.translation().x() += 0.5;

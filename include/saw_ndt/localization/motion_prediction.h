@@ -12,9 +12,10 @@ struct SAW_NDT_EXPORT MotionPredictionOptions {
   /// What a vehicle does that a constant velocity does not foresee, one sigma: accelerations (m/s^2) that last.
   double acceleration_sigma_mps2 = 3.0;
   double turn_acceleration_sigma_radps2 = 0.5;  ///< the same of turns (rad/s^2)
+  double unknown_speed_sigma_mps = 15.0;        ///< of the velocity while none is known, one sigma (m/s)
   double initial_sigma_m = 20.0;                ///< of the position of an initial pose (m)
-  double initial_sigma_deg = 30.0;              ///< of its rotation (degrees)
-  double max_extrapolation_s = 10.0;            ///< a motion is not extrapolated for longer (s)
+  double initial_sigma_deg = 60.0;              ///< of its rotation (degrees); from 30 on, any heading is thought of
+  double max_extrapolation_s = 15.0;            ///< after a longer time the motion is unknown again (s)
   int lost_after_scans = 3;                     ///< rejected one after the other, 1 or more
 
   /// Throws std::invalid_argument that names the field and its value.
@@ -34,7 +35,8 @@ struct MeasuredPose {
 /// III.C of the paper), by constant velocity and turn rate in the vehicle's own frame, a circle where it turns, both
 /// bounded. Before there are two, the last pose. Beside the pose it carries the covariance of pose and velocity, that
 /// of just this estimator: free directions keep the prediction and its growing uncertainty, and an acceleration of
-/// unknown size is reckoned with but not estimated (a "consider" state).
+/// unknown size is reckoned with but not estimated (a "consider" state). Stamps may be wrong: after a gap, and where
+/// they do not grow, the covariance holds the motion of half the time more or less.
 class SAW_NDT_EXPORT MotionPrediction {
  public:
   explicit MotionPrediction(const MotionPredictionOptions& options = {});
@@ -42,20 +44,25 @@ class SAW_NDT_EXPORT MotionPrediction {
   /// Forgets all poses and starts from one whose stamp is not known.
   /// @throws std::invalid_argument unless it is a finite rigid transform
   void reset(const Eigen::Isometry3d& T_map_base);
-  /// Adds an accepted pose. One whose stamp (s) is not after the last adds nothing, unless it is more than a second
-  /// before it: then the clock was set back.
+  /// Adds an accepted pose and returns its covariance, as TrackState::covariance. A scan whose stamp (s) is not after
+  /// the last comes late and adds nothing, unless it is more than a second before it, where it could not have been
+  /// then, or the third in a row: then the clock was set back.
   /// @throws std::invalid_argument for what is not finite
-  void accept(const MeasuredPose& pose, double stamp_s);
+  Matrix6d accept(const MeasuredPose& pose, double stamp_s);
   /// The same of a pose that is exact.
-  void accept(const Eigen::Isometry3d& T_map_base, double stamp_s) { accept(MeasuredPose{T_map_base}, stamp_s); }
-  /// A scan was rejected: nothing new is known.
-  void reject();
+  Matrix6d accept(const Eigen::Isometry3d& T_map_base, double stamp_s) {
+    return accept(MeasuredPose{T_map_base}, stamp_s);
+  }
+  /// A scan was rejected: nothing new is known. An initial pose is that of the first scan, rejected or not.
+  void reject(double stamp_s);
 
   /// The pose expected at a stamp, which may be up to a second before the last.
   /// @throws std::invalid_argument for a stamp that is not finite, std::logic_error before reset() or accept()
   Eigen::Isometry3d predict(double stamp_s) const;
   /// Its covariance, as AlignmentResult::covariance. @throws as predict()
   Matrix6d predictedCovariance(double stamp_s) const;
+  /// Whether a pose is where the vehicle cannot well have come by then, if the stamp is true.
+  bool isSurprising(const MeasuredPose& pose, double stamp_s) const;
 
   const TrackState& state() const { return state_; }
 
@@ -63,12 +70,15 @@ class SAW_NDT_EXPORT MotionPrediction {
   /// Errors of the pose, of velocity and turn rate, and of the accelerations, in the axes of the map.
   using Covariance = Eigen::Matrix<double, 18, 18>;
 
-  double elapsed(double stamp_s) const;
-  Covariance propagated(double elapsed_s) const;
+  struct Interval;
+
+  Interval intervalTo(double stamp_s) const;
+  Covariance propagated(const Interval& interval) const;
 
   MotionPredictionOptions options_;
   TrackState state_;
   Covariance covariance_ = Covariance::Zero();
+  int late_scans_ = 0;  // one after the other
 };
 
 /// An aligned pose with what it does not tell taken from the predicted one: free directions keep the prediction
@@ -79,5 +89,9 @@ SAW_NDT_EXPORT Eigen::Isometry3d keptAlongFreeDirections(const Eigen::Isometry3d
 
 /// The error of a pose by (translation, rotation), in the axes of the map: it turns and moves `from` to `to`.
 SAW_NDT_EXPORT Vector6d poseDifference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+
+/// Whether chance makes an error of that covariance so large less than once in a thousand times (a squared Mahalanobis
+/// distance of 22.5).
+SAW_NDT_EXPORT bool isUnlikely(const Vector6d& error, const Matrix6d& covariance);
 
 }  // namespace saw_ndt

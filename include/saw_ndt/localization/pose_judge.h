@@ -23,13 +23,15 @@ struct SAW_NDT_EXPORT AcceptanceOptions {
   /// none are tried.
   double min_advantage_sigmas = 5.0;
   /// Greatest distance of the pose from the prediction (m), where that is sure. It grows with the time since the last
-  /// pose, by what an acceleration of 10 m/s^2 does, or, while no velocity is known, by max_unknown_speed_mps; and with
-  /// the uncertainty of the prediction: three standard deviations are always allowed.
+  /// pose, by what an acceleration of 10 m/s^2 does, and with the uncertainty of the prediction: three standard
+  /// deviations are always allowed.
   double max_correction_m = 3.0;
   /// Greatest turn from the prediction (degrees). It grows likewise, by MotionPredictionOptions::max_turn_rate_radps.
   double max_correction_deg = 10.0;
-  double max_unknown_speed_mps = 40.0;  ///< before a velocity is known the vehicle may have moved this fast (m/s)
-  double max_sigma_m = 0.5;             ///< a pose that is less sure along a direction that is not free tells nothing
+  double max_sigma_m = 0.5;  ///< a pose that is less sure along a direction that is not free tells nothing
+  /// Neither does one of which the prediction, which is kept along free directions, is less sure than this.
+  double max_free_sigma_m = 300.0;
+  double max_free_sigma_deg = 20.0;  ///< the same of its rotation
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
@@ -67,7 +69,9 @@ struct PoseExpectation {
   double max_correction_m = 0.0;
   double max_correction_deg = 0.0;
   double search_radius_m = 0.0;  ///< how far along the road the vehicle may be from there, if all is doubted
+  bool unsure = false;           ///< by more than 0.3 m: a pose next to the right one may pass for it
   bool vague = false;            ///< nothing much is expected: there is no pose before, or the prediction is unsure
+  bool any_heading = false;      ///< the vehicle may look the other way
 };
 
 /// Judges the result of an alignment.
