@@ -26,7 +26,7 @@ using saw_ndt::TrustCounts;
 constexpr char kDescription[] =
     "Localizes simulated drives with faults in the map of another drive through the same scene, and prints how often a "
     "wrong pose was accepted and how soon the localizer said that it is lost. A pose is wrong that is off by more than "
-    "0.5 m or 2 degrees, and by more than three standard deviations where the scan leaves a direction free. A run is "
+    "0.5 m or 2 degrees beyond three standard deviations of what the scan leaves free. A run is "
     "astray where the published pose is wrong from some scan on until the localizer says that it is lost or the run "
     "ends; 'scans until lost' counts from the first of these scans. 'NEES / 6' and 'inside 95 %' tell of accepted "
     "scans whether the error is what the covariance says: 1 and 95 % are right. Faults of the start meet a vehicle "

@@ -63,15 +63,12 @@ bool misleads(const PoseDifference& difference, const Matrix6d& covariance, cons
   if (isRight(difference)) return false;
   Vector6d lengths;
   lengths << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(kRotationArm_m);
-  const Vector6d scaled = lengths.asDiagonal() * difference.e;
-  const Eigen::VectorXd along_free = free_directions.transpose() * scaled;
-  for (Eigen::Index i = 0; i < along_free.size(); ++i) {
-    const Vector6d direction = lengths.asDiagonal() * free_directions.col(i);
-    const double variance = direction.dot(covariance * direction);
-    if (!(std::abs(along_free[i]) <= kFreeSigmas * std::sqrt(std::max(0.0, variance)))) return true;
-  }
-  const Vector6d held = scaled - free_directions * along_free;
-  return !isRight({lengths.cwiseInverse().asDiagonal() * held});
+  const Matrix6d onto_free =
+      lengths.cwiseInverse().asDiagonal() * (free_directions * free_directions.transpose()) * lengths.asDiagonal();
+  const Matrix6d free_covariance = onto_free * covariance * onto_free.transpose();
+  const Vector6d told = kFreeSigmas * free_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Vector6d beyond = (difference.e.cwiseAbs() - told).cwiseMax(0.0);
+  return !isRight({beyond});
 }
 
 double normalizedSquaredError(const PoseDifference& difference, const Matrix6d& covariance) {

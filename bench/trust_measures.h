@@ -20,8 +20,9 @@ struct PoseDifference {
   double angle_deg() const { return degreesFromRadians(e.tail<3>().norm()); }
 };
 
-/// Whether a pose that is so far off would mislead its user: by more than 0.5 m or 2 degrees, unless that is along free
-/// directions alone and within three standard deviations of the covariance there.
+/// Whether a pose that is so far off would mislead its user: by more than 0.5 m or 2 degrees, beside what free
+/// directions explain: in every axis of the map, three standard deviations of the part of the covariance that is
+/// theirs. (A road bends, so that one who is elsewhere on it looks another way.)
 bool misleads(const PoseDifference& difference, const Matrix6d& covariance, const PoseDirections& free_directions);
 
 /// e^T C^-1 e, or nothing (a negative number) where the covariance is not positive definite.

@@ -208,7 +208,7 @@ Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const At
   PoseDirections& free = best.alignment.free_directions;
   free_too -= free * (free.transpose() * free_too);
   constexpr double kAlreadyFree = 0.5;
-  if (free_too.norm() > kAlreadyFree) {
+  if (free_too.norm() > kAlreadyFree && !judge_.isSurprising(best.alignment, best.T_map_base, expectation)) {
     free_too.normalize();
     free.conservativeResize(6, free.cols() + 1);
     free.rightCols<1>() = free_too;
