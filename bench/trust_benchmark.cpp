@@ -36,6 +36,9 @@ constexpr char kDescription[] =
 // Of a run: what comes before a fault, the fault and a scan after it.
 constexpr std::size_t kLeastScans = saw_ndt::kLeastRunUp + 2;
 
+// Of an initial pose that may look anywhere.
+constexpr double kAnyHeadingSigma_deg = 60.0;
+
 struct Arguments {
   std::vector<std::string> scenes{"residential", "highway", "rural", "tunnel", "bridge", "plain", "equal_houses"};
   std::vector<std::string> kinds = saw_ndt::faultKinds();
@@ -80,10 +83,12 @@ saw_ndt::CampaignRun makeRun(const Cell& cell, const saw_ndt::LoadedDrive& drive
 }
 
 TrustCounts play(const saw_ndt::CampaignRun& run, const saw_ndt::LoadedDrive& drive, const Place& place,
-                 const saw_ndt::LocalizationMethod& method, const std::string& name, bool trace) {
+                 const saw_ndt::LocalizationMethod& method, const std::string& name, double initial_sigma_deg,
+                 bool trace) {
   static std::mutex output;
   saw_ndt::LocalizerOptions options;
   options.method = method;
+  options.prediction.initial_sigma_deg = initial_sigma_deg;
   options.alignment.threads = 1;
   saw_ndt::Localizer localizer(place.target, options);
   localizer.setInitialPose(place.start.value_or(run.T_map_base_initial));
@@ -204,7 +209,10 @@ class Campaign {
       const saw_ndt::CampaignRun run = makeRun(cell, drive, arguments_.scans);
       const std::string name =
           scene + ", " + cell.fault->kind + " " + cell.fault->strength + ", seed " + std::to_string(cell.seed);
-      counts[i] = play(run, drive, places.at(cell.fault->map), method_, name, arguments_.trace);
+      counts[i] =
+          play(run, drive, places.at(cell.fault->map), method_, name,
+               cell.fault->from_start ? kAnyHeadingSigma_deg : saw_ndt::MotionPredictionOptions().initial_sigma_deg,
+               arguments_.trace);
       progress.step();
     });
     for (std::size_t i = 0; i < cells.size(); ++i) of_rows[rowOf(*cells[i].fault)].add(counts[i]);

@@ -14,7 +14,7 @@ struct SAW_NDT_EXPORT MotionPredictionOptions {
   double turn_acceleration_sigma_radps2 = 0.5;  ///< the same of turns (rad/s^2)
   double unknown_speed_sigma_mps = 15.0;        ///< of the velocity while none is known, one sigma (m/s)
   double initial_sigma_m = 20.0;                ///< of the position of an initial pose (m)
-  double initial_sigma_deg = 60.0;              ///< of its rotation (degrees); from 30 on, any heading is thought of
+  double initial_sigma_deg = 30.0;              ///< of its rotation (degrees); above 30 it may look the other way
   double max_extrapolation_s = 15.0;            ///< after a longer time the motion is unknown again (s)
   int lost_after_scans = 3;                     ///< rejected one after the other, 1 or more
 
