@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "evaluation/statistics.h"
+#include "registration/pose_lengths.h"
 
 namespace saw_ndt {
 namespace {
@@ -61,10 +62,7 @@ bool isLost(const LocalizationResult& result) { return result.track.status == Tr
 
 bool misleads(const PoseDifference& difference, const Matrix6d& covariance, const PoseDirections& free_directions) {
   if (isRight(difference)) return false;
-  Vector6d lengths;
-  lengths << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(kRotationArm_m);
-  const Matrix6d onto_free =
-      lengths.cwiseInverse().asDiagonal() * (free_directions * free_directions.transpose()) * lengths.asDiagonal();
+  const Matrix6d onto_free = internal::projectorOnto(free_directions);
   const Matrix6d free_covariance = onto_free * covariance * onto_free.transpose();
   const Vector6d told = kFreeSigmas * free_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Vector6d beyond = (difference.e.cwiseAbs() - told).cwiseMax(0.0);

@@ -9,6 +9,7 @@
 #include "common/executor.h"
 #include "common/stopwatch.h"
 #include "localization/rival_poses.h"
+#include "registration/pose_lengths.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
@@ -114,11 +115,25 @@ constexpr double kCurvedShare = 0.1;
 constexpr double kMovingSpeed_mps = 1.0;
 
 bool isElsewhere(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_rival) {
-  Vector6d away = poseDifference(alignment.T_map_source, T_map_rival);
-  away.tail<3>() *= kRotationArm_m;
+  Vector6d away = inLengths(poseDifference(alignment.T_map_source, T_map_rival));
   const Eigen::VectorXd along_free = alignment.free_directions.transpose() * away;
   away -= alignment.free_directions * along_free;
   return away.norm() > kOtherPlace_m + kCurvedShare * along_free.norm();
+}
+
+// Adds a direction of translation to those that are free, unless it is one of them.
+bool setFree(const Eigen::Vector3d& direction, AlignmentResult& alignment) {
+  constexpr double kAlreadyFree = 0.5;
+  PoseDirections& free = alignment.free_directions;
+  Vector6d free_too = Vector6d::Zero();
+  free_too.head<3>() = direction;
+  free_too -= free * (free.transpose() * free_too);
+  if (free_too.norm() < kAlreadyFree) return false;
+  free_too.normalize();
+  free.conservativeResize(6, free.cols() + 1);
+  free.rightCols<1>() = free_too;
+  alignment.covariance += freeCovariance(free_too);
+  return true;
 }
 
 }  // namespace
@@ -139,9 +154,8 @@ void Localizer::confirmFreeDirections(const SourcePoints& source, AlignmentResul
       start.translation() += way_m * suspected.col(k).head<3>();
       start.linear() = rotationFromVector(way_m / kRotationArm_m * suspected.col(k).tail<3>()) * found.linear();
       const AlignmentResult again = aligner_(source, start);
-      Vector6d missed = poseDifference(found, again.T_map_source);
-      missed.tail<3>() *= kRotationArm_m;
-      comes_back = again.converged() && missed.norm() < kBack_m;
+      const double missed_m = inLengths(poseDifference(found, again.T_map_source)).norm();
+      comes_back = again.converged() && missed_m < kBack_m;
     }
     if (comes_back) {
       alignment.covariance -= freeCovariance(suspected.col(k));
@@ -163,21 +177,19 @@ Localizer::Attempt Localizer::attempt(const SourcePoints& source, const Eigen::I
   return result;
 }
 
-Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const Attempt& found,
-                                            const PoseExpectation& expectation) {
-  const double min_advantage_sigmas = options_.acceptance.min_advantage_sigmas;
-  if (!target_ || min_advantage_sigmas == 0.0) return found;
+std::vector<Eigen::Isometry3d> Localizer::rivalsOf(const SourcePoints& source, const Attempt& found,
+                                                   const PoseExpectation& expectation) {
   const Eigen::Isometry3d& T_map_found = found.alignment.T_map_source;
-  const Eigen::Vector3d direction = leastHeldDirection(found.alignment.covariance);
-  SearchedWay way;
-  way.direction = direction;
+  const Eigen::Matrix3d& R_map_base = expectation.T_map_base.linear();
   const TrackState& track = prediction_.state();
-  const double speed_mps = (expectation.T_map_base.linear() * track.velocity_base_mps).dot(direction);
-  if (std::abs(speed_mps) > kMovingSpeed_mps) {
-    way.turn_per_m = expectation.T_map_base.linear() * track.turn_rate_base_radps / speed_mps;
-  }
-  std::vector<Eigen::Isometry3d> starts =
-      rivalStarts(*target_, source, T_map_found, way, expectation.search_radius_m, options_.alignment.threads);
+  SearchedWay way;
+  way.direction = leastHeldDirection(found.alignment.covariance);
+  const double speed_mps = (R_map_base * track.velocity_base_mps).dot(way.direction);
+  if (std::abs(speed_mps) > kMovingSpeed_mps) way.turn_per_m = R_map_base * track.turn_rate_base_radps / speed_mps;
+  const bool is_expected = !expectation.vague && !expectation.unsure && found.alignment.free_directions.cols() == 0 &&
+                           !judge_.isSurprising(found.alignment, found.T_map_base, expectation);
+  std::vector<Eigen::Isometry3d> starts = rivalStarts(*target_, source, T_map_found, way, expectation.search_radius_m,
+                                                      is_expected, options_.alignment.threads);
   if (expectation.any_heading) {
     for (const double turn_deg : {90.0, 180.0, 270.0}) {
       starts.push_back(T_map_found);
@@ -189,33 +201,39 @@ Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const At
     const AlignmentResult rival = aligner_(source, start);
     if (rival.converged()) rivals.push_back(rival.T_map_source);
   }
+  return rivals;
+}
 
-  const auto advantageOver = [&](const Attempt& here, const Eigen::Isometry3d& T_map_there) {
-    return advantage(*target_, source, here.alignment.T_map_source, T_map_there);
-  };
+Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const Attempt& found,
+                                            const PoseExpectation& expectation) {
+  constexpr std::size_t kComparedPoints = 6000;
+  const double min_advantage_sigmas = options_.acceptance.min_advantage_sigmas;
+  if (!target_ || min_advantage_sigmas == 0.0) return found;
+  const std::vector<Eigen::Isometry3d> rivals = rivalsOf(source, found, expectation);
+  const FitComparison comparison(*target_, source, kComparedPoints);
   Attempt best = found;
+  FitComparison::Fits of_best = comparison.fitsAt(best.alignment.T_map_source);
+  std::vector<FitComparison::Fits> of_rivals;
   for (const Eigen::Isometry3d& rival : rivals) {
-    if (advantageOver(best, rival) <= -min_advantage_sigmas) best = attempt(source, rival, expectation);
+    of_rivals.push_back(comparison.fitsAt(rival));
+    if (comparison.advantage(of_best, of_rivals.back()) > -min_advantage_sigmas) continue;
+    best = attempt(source, rival, expectation);
+    of_best = comparison.fitsAt(best.alignment.T_map_source);
   }
-  const bool ambiguous = std::any_of(rivals.begin(), rivals.end(), [&](const Eigen::Isometry3d& rival) {
-    return isElsewhere(best.alignment, rival) && advantageOver(best, rival) < min_advantage_sigmas;
-  });
+  bool ambiguous = false;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    ambiguous |=
+        isElsewhere(best.alignment, rivals[i]) && comparison.advantage(of_best, of_rivals[i]) < min_advantage_sigmas;
+  }
   if (!ambiguous) return best;
 
   // The scan fits elsewhere as well. That is no harm if it fits where the vehicle is expected along that way.
-  Vector6d free_too = Vector6d::Zero();
-  free_too.head<3>() = direction;
-  PoseDirections& free = best.alignment.free_directions;
-  free_too -= free * (free.transpose() * free_too);
-  constexpr double kAlreadyFree = 0.5;
-  if (free_too.norm() > kAlreadyFree && !judge_.isSurprising(best.alignment, best.T_map_base, expectation)) {
-    free_too.normalize();
-    free.conservativeResize(6, free.cols() + 1);
-    free.rightCols<1>() = free_too;
-    best.alignment.covariance += freeCovariance(free_too);
-    best.T_map_base = keptAlongFreeDirections(expectation.T_map_base, best.alignment.T_map_source, free);
+  if (!judge_.isSurprising(best.alignment, best.T_map_base, expectation) &&
+      setFree(leastHeldDirection(found.alignment.covariance), best.alignment)) {
+    best.T_map_base =
+        keptAlongFreeDirections(expectation.T_map_base, best.alignment.T_map_source, best.alignment.free_directions);
     best.acceptance = judge_.judge(best.alignment, best.T_map_base, expectation);
-    if (advantageOver(best, best.T_map_base) < min_advantage_sigmas) return best;
+    if (comparison.advantage(of_best, comparison.fitsAt(best.T_map_base)) < min_advantage_sigmas) return best;
   }
   best.acceptance = Acceptance::AMBIGUOUS;
   return best;

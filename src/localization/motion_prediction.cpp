@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "registration/pose_lengths.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
@@ -56,14 +57,6 @@ Matrix6d diagonal(double translation, double rotation) {
   return values.asDiagonal();
 }
 
-// Projects a difference of poses onto what is held.
-Matrix6d projectorOntoHeld(const PoseDirections& free_directions) {
-  Vector6d arm = Vector6d::Ones();
-  arm.tail<3>().setConstant(kRotationArm_m);
-  const Matrix6d held = Matrix6d::Identity() - free_directions * free_directions.transpose();
-  return arm.cwiseInverse().asDiagonal() * held * arm.asDiagonal();
-}
-
 }  // namespace
 
 const char* toString(TrackStatus status) {
@@ -94,7 +87,8 @@ Eigen::Isometry3d keptAlongFreeDirections(const Eigen::Isometry3d& T_map_predict
                                           const Eigen::Isometry3d& T_map_aligned,
                                           const PoseDirections& free_directions) {
   if (free_directions.cols() == 0) return T_map_aligned;
-  const Vector6d held = projectorOntoHeld(free_directions) * poseDifference(T_map_predicted, T_map_aligned);
+  const Vector6d difference = poseDifference(T_map_predicted, T_map_aligned);
+  const Vector6d held = difference - internal::projectorOnto(free_directions) * difference;
   Eigen::Isometry3d T_map_kept = T_map_predicted;
   T_map_kept.translation() += held.head<3>();
   T_map_kept.linear() = rotationFromVector(held.tail<3>()) * T_map_predicted.linear();
@@ -201,58 +195,27 @@ Matrix6d MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
   if (state_.status == TrackStatus::NOT_INITIALIZED) reset(pose.T_map_base);
   const Interval interval = intervalTo(stamp_s);
   const Covariance predicted = propagated(interval);
-  const Matrix6d held = projectorOntoHeld(pose.free_directions);
+  const Matrix6d held = Matrix6d::Identity() - internal::projectorOnto(pose.free_directions);
   Eigen::Matrix<double, 18, 6> gain = Eigen::Matrix<double, 18, 6>::Zero();
   gain.topRows<6>() = held;
-  const bool learns_velocity =
-      interval.comes_after && !interval.too_long && (pose.learn_velocity || !state_.velocity_known);
-  TrackState next = state_;
-  if (learns_velocity) {
-    const double elapsed_s = interval.duration_s;
-    const Eigen::Isometry3d T_map_predicted = predict(stamp_s);
-    const Eigen::Isometry3d T_last_now = state_.T_map_base.inverse() * pose.T_map_base;
-    const Eigen::Vector3d turned = rotationVector(T_last_now.linear());
-    Matrix6d velocity_gain = Matrix6d::Identity() / elapsed_s;
-    Eigen::Vector3d velocity_mps =
-        pose.T_map_base.linear() * (meanRotation(turned).inverse() * T_last_now.translation() / elapsed_s);
-    // Where the last pose was unsure, such as along a tunnel that has ended, the way from it does not tell the
-    // velocity; what is known of how position and velocity went wrong together does (the Kalman gain).
-    const Eigen::Vector3d innovation = pose.T_map_base.translation() - T_map_predicted.translation();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> last(state_.covariance.topLeftCorner<3, 3>());
-    for (int k = 0; k < 3; ++k) {
-      if (last.eigenvalues()[k] < kSureSigma_m * kSureSigma_m) continue;
-      const Eigen::Vector3d u = last.eigenvectors().col(k);
-      const double position_variance =
-          u.dot((predicted.topLeftCorner<3, 3>() + pose.covariance.topLeftCorner<3, 3>()) * u);
-      const double kalman_gain = u.dot(predicted.block<3, 3>(6, 0) * u) / position_variance;
-      velocity_gain.topLeftCorner<3, 3>() += (kalman_gain - 1.0 / elapsed_s) * u * u.transpose();
-      velocity_mps += (kalman_gain - 1.0 / elapsed_s) * u * u.dot(innovation);
-    }
-    gain.middleRows<6>(6) = velocity_gain * held;
-    next.velocity_base_mps = bounded(pose.T_map_base.linear().transpose() * velocity_mps, options_.max_speed_mps);
-    next.turn_rate_base_radps = bounded(turned / elapsed_s, options_.max_turn_rate_radps);
-    next.velocity_known = true;
-  }
-  if (interval.too_long) {
-    next.velocity_base_mps.setZero();
-    next.turn_rate_base_radps.setZero();
-    next.velocity_known = false;
-  }
-  Covariance remaining = Covariance::Identity();
-  remaining.leftCols<6>() -= gain;
-  const Covariance updated = remaining * predicted * remaining.transpose() + gain * pose.covariance * gain.transpose();
-
+  const auto updated = [&]() -> Covariance {
+    Covariance remaining = Covariance::Identity();
+    remaining.leftCols<6>() -= gain;
+    return remaining * predicted * remaining.transpose() + gain * pose.covariance * gain.transpose();
+  };
   state_.status = TrackStatus::TRACKING;
   state_.rejected_scans = 0;
-  const bool is_late = state_.stamp_s && !interval.comes_after && !interval.set_back && pose.learn_velocity;
-  late_scans_ = is_late ? late_scans_ + 1 : 0;
-  if (is_late && late_scans_ <= kMostLateScans) return updated.topLeftCorner<6, 6>();
+  if (!pose.learn_velocity) late_scans_ = 0;
+  if (pose.learn_velocity && comesLate(interval)) return updated().topLeftCorner<6, 6>();
 
-  late_scans_ = 0;
-  covariance_ = updated;
-  state_.velocity_base_mps = next.velocity_base_mps;
-  state_.turn_rate_base_radps = next.turn_rate_base_radps;
-  state_.velocity_known = next.velocity_known;
+  if (interval.too_long) {
+    state_.velocity_base_mps.setZero();
+    state_.turn_rate_base_radps.setZero();
+    state_.velocity_known = false;
+  } else if (interval.comes_after && (pose.learn_velocity || !state_.velocity_known)) {
+    gain.middleRows<6>(6) = learnVelocity(pose, stamp_s, predicted) * held;
+  }
+  covariance_ = updated();
   state_.T_map_base = pose.T_map_base;
   state_.covariance = covariance_.topLeftCorner<6, 6>();
   state_.stamp_s = stamp_s;
@@ -263,22 +226,57 @@ Matrix6d MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
   return state_.covariance;
 }
 
+bool MotionPrediction::comesLate(const Interval& interval) {
+  const bool is_late = state_.stamp_s && !interval.comes_after && !interval.set_back;
+  late_scans_ = is_late ? late_scans_ + 1 : 0;
+  if (late_scans_ <= kMostLateScans) return is_late;
+  late_scans_ = 0;
+  return false;
+}
+
+Matrix6d MotionPrediction::learnVelocity(const MeasuredPose& pose, double stamp_s, const Covariance& predicted) {
+  const double elapsed_s = *state_.timeSinceLast(stamp_s);
+  const Eigen::Isometry3d T_last_now = state_.T_map_base.inverse() * pose.T_map_base;
+  const Eigen::Vector3d turned = rotationVector(T_last_now.linear());
+  Matrix6d gain = Matrix6d::Identity() / elapsed_s;
+  Eigen::Vector3d velocity_mps =
+      pose.T_map_base.linear() * (meanRotation(turned).inverse() * T_last_now.translation() / elapsed_s);
+  // Where the last pose was unsure, such as along a tunnel that has ended, the way from it does not tell the velocity;
+  // what is known of how position and velocity went wrong together does (the Kalman gain).
+  const Eigen::Vector3d innovation = pose.T_map_base.translation() - predict(stamp_s).translation();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> last(state_.covariance.topLeftCorner<3, 3>());
+  for (int k = 0; k < 3; ++k) {
+    if (last.eigenvalues()[k] < kSureSigma_m * kSureSigma_m) continue;
+    const Eigen::Vector3d u = last.eigenvectors().col(k);
+    const double position_variance =
+        u.dot((predicted.topLeftCorner<3, 3>() + pose.covariance.topLeftCorner<3, 3>()) * u);
+    const double more_gain = u.dot(predicted.block<3, 3>(6, 0) * u) / position_variance - 1.0 / elapsed_s;
+    gain.topLeftCorner<3, 3>() += more_gain * u * u.transpose();
+    velocity_mps += more_gain * u * u.dot(innovation);
+  }
+  state_.velocity_base_mps = bounded(pose.T_map_base.linear().transpose() * velocity_mps, options_.max_speed_mps);
+  state_.turn_rate_base_radps = bounded(turned / elapsed_s, options_.max_turn_rate_radps);
+  state_.velocity_known = true;
+  return gain;
+}
+
 void MotionPrediction::reject(double stamp_s) {
   if (state_.status == TrackStatus::NOT_INITIALIZED) return;
   ++state_.rejected_scans;
   state_.status = state_.rejected_scans >= options_.lost_after_scans ? TrackStatus::LOST : TrackStatus::COASTING;
   if (!std::isfinite(stamp_s)) return;
-  if (!state_.stamp_s) state_.stamp_s = stamp_s;
+  if (!state_.stamp_s) {
+    state_.stamp_s = stamp_s;
+    return;
+  }
   const Interval interval = intervalTo(stamp_s);
-  late_scans_ = interval.comes_after || stamp_s == *state_.stamp_s ? 0 : late_scans_ + 1;
-  if (!interval.set_back && late_scans_ <= kMostLateScans) return;
+  if (interval.comes_after || comesLate(interval)) return;
   // The clock was set back: how long it has been since the last pose is known no more.
   Interval unknown;
   unknown.sigma_s = kSetBackSigma_s;
   covariance_ = propagated(unknown);
   state_.covariance = covariance_.topLeftCorner<6, 6>();
   state_.stamp_s = stamp_s;
-  late_scans_ = 0;
 }
 
 Eigen::Isometry3d MotionPrediction::predict(double stamp_s) const {

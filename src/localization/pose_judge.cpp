@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/pose_lengths.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/localization/motion_prediction.h"
@@ -45,23 +46,14 @@ double largestSigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
-// What is left of a covariance when it is projected in lengths, as PoseDirections are.
-Matrix6d projected(const Matrix6d& covariance, const Matrix6d& projector) {
-  Vector6d arm = Vector6d::Ones();
-  arm.tail<3>().setConstant(kRotationArm_m);
-  const Matrix6d in_lengths = projector * arm.asDiagonal() * covariance * arm.asDiagonal() * projector;
-  return arm.cwiseInverse().asDiagonal() * in_lengths * arm.cwiseInverse().asDiagonal();
-}
-
-Matrix6d onto(const PoseDirections& directions) { return directions * directions.transpose(); }
-
 bool fitsWorse(const AlignmentResult& alignment, const TrackState& track) {
   return alignment.overlap < kLessThanUsual * track.usual_overlap.value_or(0.0);
 }
 
 // The covariance without what is free.
 Matrix6d heldCovariance(const AlignmentResult& alignment) {
-  return projected(alignment.covariance, Matrix6d::Identity() - onto(alignment.free_directions));
+  const Matrix6d held = Matrix6d::Identity() - internal::projectorOnto(alignment.free_directions);
+  return held * alignment.covariance * held.transpose();
 }
 
 }  // namespace
@@ -144,7 +136,8 @@ Acceptance PoseJudge::judge(const AlignmentResult& alignment, const Eigen::Isome
   if (alignment.free_directions.middleRows<3>(2).squaredNorm() > kMostFreeShareOffTheGround) {
     return Acceptance::UNDETERMINED;
   }
-  const Matrix6d kept = projected(expectation.covariance, onto(alignment.free_directions));
+  const Matrix6d free = internal::projectorOnto(alignment.free_directions);
+  const Matrix6d kept = free * expectation.covariance * free.transpose();
   if (largestSigma(kept.topLeftCorner<3, 3>()) > options_.max_free_sigma_m ||
       degreesFromRadians(largestSigma(kept.bottomRightCorner<3, 3>())) > options_.max_free_sigma_deg) {
     return Acceptance::UNDETERMINED;
@@ -166,8 +159,8 @@ bool PoseJudge::isSurprising(const AlignmentResult& alignment, const Eigen::Isom
 
 bool PoseJudge::isDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                            const PoseExpectation& expectation, const TrackState& track) const {
-  return expectation.vague || expectation.unsure || fitsWorse(alignment, track) ||
-         isSurprising(alignment, T_map_base, expectation);
+  return expectation.vague || expectation.unsure || alignment.free_directions.cols() > 0 ||
+         fitsWorse(alignment, track) || isSurprising(alignment, T_map_base, expectation);
 }
 
 Acceptance PoseJudge::judgeDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
@@ -176,7 +169,7 @@ Acceptance PoseJudge::judgeDoubtful(const AlignmentResult& alignment, const Eige
     return Acceptance::UNDETERMINED;
   }
   const bool unexpected = expectation.vague || isSurprising(alignment, T_map_base, expectation);
-  const double usual_share = unexpected ? options_.min_usual_overlap_share : kMuchLessThanUsual;
+  const double usual_share = std::min(options_.min_usual_overlap_share, unexpected ? 1.0 : kMuchLessThanUsual);
   const double least = std::max(unexpected ? options_.min_overlap_in_doubt : options_.min_overlap,
                                 usual_share * track.usual_overlap.value_or(0.0));
   return alignment.overlap < least ? Acceptance::LOW_OVERLAP : Acceptance::ACCEPTED;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <vector>
 
 #include "saw_ndt/map/ndt_target.h"
@@ -19,17 +20,33 @@ struct SearchedWay {
   Eigen::Vector3d turn_per_m = Eigen::Vector3d::Zero();  ///< rotation vector in the map, of a road that bends
 };
 
-/// Where else on a way a scan may have been taken: places next to the pose, and the four farther ones at which most
-/// points lie on surfaces of the map, in the sense of advantage(). Alignments from there show it.
-/// @param radius_m  how far to look both ways
+/// Compares how many points of a sample of what is not ground lie on surfaces of the map at two poses. Points of a cell
+/// of 1 m fit or not together, so that cells, not points, count as independent.
+class FitComparison {
+ public:
+  /// Which points of the sample lie on surfaces at a pose.
+  using Fits = std::vector<bool>;
+
+  FitComparison(const NdtTarget& target, const SourcePoints& source, std::size_t most_points);
+
+  Fits fitsAt(const Eigen::Isometry3d& T_map_source) const;
+  /// How sure it is that a scan was taken here rather than there: the difference between the numbers of points that lie
+  /// on a surface at one of them alone, in standard deviations (a sign test). Negative: more do there.
+  double advantage(const Fits& here, const Fits& there) const;
+
+ private:
+  const NdtTarget& target_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<std::size_t> cell_of_point_;
+  std::size_t cell_count_ = 0;
+};
+
+/// Where else on a way a scan may have been taken: the four places at which most points lie on surfaces of the map, in
+/// the sense of FitComparison::advantage(), and places next to the pose. Alignments from there show it.
+/// @param radius_m      how far to look both ways
+/// @param is_expected   the vehicle was to be there: only places that fit nearly as well as they are
 std::vector<Eigen::Isometry3d> rivalStarts(const NdtTarget& target, const SourcePoints& source,
                                            const Eigen::Isometry3d& T_map_source, const SearchedWay& way,
-                                           double radius_m, int threads);
-
-/// How sure it is that a scan was taken at one pose rather than at a rival: the difference between the numbers of
-/// points that lie on a surface of the map at one of them alone, in standard deviations (a sign test). Negative: the
-/// rival explains more.
-double advantage(const NdtTarget& target, const SourcePoints& source, const Eigen::Isometry3d& T_map_source,
-                 const Eigen::Isometry3d& T_map_source_rival);
+                                           double radius_m, bool is_expected, int threads);
 
 }  // namespace saw_ndt::internal

@@ -142,6 +142,8 @@ TEST_F(AlignApp, SaysWhatIsWrongAndWritesNothing) {
       {quoted("source.pcd") + quoted("short.bin"), 1, "short.bin: offset 0"},
       {quoted("classes.pcd") + quoted("target.pcd"), 1, "classes.pcd: point 7: label 40"},
       {files + quoted("out.pcd") + "-guess 500,0,0,0,0,0", 1, "source.pcd: could not be aligned to"},
+      {files + quoted("out.pcd") + "-max-iterations 1 -optimizer newton-more-thuente -guess 0.6,-0.1,0.1,0,0,2", 1,
+       "too few points fit the target after 1 iterations"},
       {files + quoted("none/out.pcd"), 1, "none/out.pcd: No such file"},
   };
   for (const auto& c : cases) {

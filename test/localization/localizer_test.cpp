@@ -177,6 +177,10 @@ TEST_F(LocalizerTest, AScanMostlyOutsideOfTheMapIsRejected) {
   lenient.acceptance.min_likelihood = 0.0;
   // Far less than usual it still is.
   expectRejected(scan, Acceptance::LOW_OVERLAP, lenient);
+  lenient.acceptance.min_usual_overlap_share = 0.0;
+  const LocalizationResult result = underWay(lenient).localize(viewOf(scan), 0.2);
+  EXPECT_TRUE(result.accepted()) << toString(result.acceptance);
+  EXPECT_LT(result.alignment.likelihoods.unweighted, options.acceptance.min_likelihood);
 }
 
 TEST_F(LocalizerTest, LargeCorrectionsAreRejected) {

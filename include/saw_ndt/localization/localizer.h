@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/localization/localization_method.h"
@@ -67,7 +68,7 @@ using SourceAligner =
 /// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. It prepares the scan (ScanPreparation),
 /// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). A scan that is rejected is tried
 /// again from the last pose; one in doubt is compared with rival poses around. Scratch memory is kept from scan
-/// to scan. One object for each vehicle, not to be shared by threads; the map may be.
+/// to scan, but for scans in doubt. One object for each vehicle, not to be shared by threads; the map may be.
 class SAW_NDT_EXPORT Localizer {
  public:
   /// Makes its own target of a map.
@@ -104,6 +105,8 @@ class SAW_NDT_EXPORT Localizer {
   struct Attempt;
   Attempt attempt(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
                   const PoseExpectation& expectation);
+  std::vector<Eigen::Isometry3d> rivalsOf(const SourcePoints& source, const Attempt& found,
+                                          const PoseExpectation& expectation);
   Attempt withoutRivals(const SourcePoints& source, const Attempt& found, const PoseExpectation& expectation);
   void confirmFreeDirections(const SourcePoints& source, AlignmentResult& alignment);
   Attempt find(const SourcePoints& source, const PoseExpectation& expectation);

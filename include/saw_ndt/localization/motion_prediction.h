@@ -74,6 +74,10 @@ class SAW_NDT_EXPORT MotionPrediction {
 
   Interval intervalTo(double stamp_s) const;
   Covariance propagated(const Interval& interval) const;
+  /// Whether a scan was taken before the last one. Too many of them show a clock that was set back instead.
+  bool comesLate(const Interval& interval);
+  /// Sets the velocities of the state and returns what errors of the pose do to them.
+  Matrix6d learnVelocity(const MeasuredPose& pose, double stamp_s, const Covariance& predicted);
 
   MotionPredictionOptions options_;
   TrackState state_;

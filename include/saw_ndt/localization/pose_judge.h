@@ -16,7 +16,8 @@ struct SAW_NDT_EXPORT AcceptanceOptions {
   /// The same of a pose in doubt (PoseJudge::isDoubtful()): right ones have 0.6 and more where the map is true, wrong
   /// ones 0.5 and less, but along a road.
   double min_overlap_in_doubt = 0.45;
-  /// Least share of the usual overlap of this drive of a pose that is vaguely expected or surprising.
+  /// Least share of the usual overlap of this drive of a pose that is vaguely expected or surprising; of others in
+  /// doubt this or 0.7, whichever is less.
   double min_usual_overlap_share = 0.8;
   /// In doubt, other poses along the direction that is held least are tried. One is AMBIGUOUS unless the points that
   /// lie on surfaces of the map at it alone are more than those at any other alone, by so many standard deviations. 0:
@@ -94,8 +95,8 @@ class SAW_NDT_EXPORT PoseJudge {
   bool isSurprising(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                     const PoseExpectation& expectation) const;
 
-  /// Whether a pose that judge() accepts needs a second look: it is vaguely expected or surprising, or fewer points lie
-  /// on the map than usual.
+  /// Whether a pose that judge() accepts needs a second look: it is vaguely expected or surprising, something is free,
+  /// or fewer points lie on the map than usual.
   bool isDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                   const PoseExpectation& expectation, const TrackState& track) const;
   /// Judges one of those by stricter limits.

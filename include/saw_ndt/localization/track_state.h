@@ -24,7 +24,7 @@ struct TrackState {
   TrackStatus status = TrackStatus::NOT_INITIALIZED;
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();  ///< the last accepted pose, or the initial one
   Matrix6d covariance = Matrix6d::Zero();  ///< of that pose, as AlignmentResult::covariance about the base's origin
-  std::optional<double> stamp_s;           ///< of that pose; an initial pose has none
+  std::optional<double> stamp_s;           ///< of that pose; of an initial pose, that of the first scan
   /// Whether two accepted poses with growing stamps are known, from which these velocities follow.
   bool velocity_known = false;
   Eigen::Vector3d velocity_base_mps = Eigen::Vector3d::Zero();     ///< in the frame of the moving base
