@@ -35,7 +35,10 @@ void appendTo(std::vector<Value>& whole, std::vector<Value>&& part) {
 }  // namespace
 
 NdtCell::NdtCell(const VoxelStatistics& statistics) { fill(*this, statistics); }
-PackedNdtCell::PackedNdtCell(const VoxelStatistics& statistics) { fill(*this, statistics); }
+PackedNdtCell::PackedNdtCell(const VoxelStatistics& statistics) {
+  fill(*this, statistics);
+  ground_share = static_cast<float>(statistics.ground_share);
+}
 
 void NdtCells::reserve(std::size_t count) {
   voxels.reserve(count);

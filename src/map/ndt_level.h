@@ -29,6 +29,7 @@ struct alignas(64) PackedNdtCell {
   float inverse_covariance[6];  ///< 1/m^2: xx xy xz yy yz zz
   float weight;                 ///< w_target of the paper
   float mean_confidence;
+  float ground_share;  ///< of the points; matching does not read it
 };
 
 /// Cells on their way into a level.

@@ -114,6 +114,7 @@ void internal::appendVoxelStatistics(const MergedVoxel* voxels, std::size_t coun
       unbounded[matrix_count] = level.unbounded_ground && voxel.ground_share > 0.5;
       known.mean_from_centre = meanAndCovariance(voxel.sums, metres_per_step, matrices, matrix_count++);
       known.mean_confidence = voxel.mean_confidence;
+      known.ground_share = voxel.ground_share;
     }
     findEigenvectors(matrices, matrix_count);
     std::size_t kept = first;

@@ -19,7 +19,8 @@ struct VoxelStatistics {
   Eigen::Matrix3d inverse_covariance = Eigen::Matrix3d::Zero();
   double mean_confidence = 0.0;  ///< mean structural confidence of the points
   StructureClass structure_class = StructureClass::VOLUMETRIC;
-  double weight = 0.0;  ///< w_target of the paper
+  double weight = 0.0;        ///< w_target of the paper
+  double ground_share = 0.0;  ///< share of the points labelled ground
 
   /// The mean in the map frame (m).
   Eigen::Vector3d mean(double resolution_m) const {

@@ -1,0 +1,231 @@
+#include "localization/place_index.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+#include "common/executor.h"
+#include "map/ndt_level.h"
+
+namespace saw_ndt::internal {
+namespace {
+
+// Ground is taken to go on so far beside what is seen of it, and a vehicle may stand so near to it: it hides what is
+// under it (columns).
+constexpr int kGroundGoesOn = 40;
+constexpr int kHiddenGround = 5;
+
+// Without labels, a level surface so much higher than another one near by is no ground (m), nor one that is level by
+// less than this share of its curvature.
+constexpr double kRoof_m = 2.0;
+constexpr int kRoofBlock_m = 8;
+constexpr double kLevelShare = 0.9;
+
+// Larger voxels are taken to reach so many standard deviations from their mean.
+constexpr double kReach_sigmas = 1.2;
+
+constexpr double kFarthest_m = 1.0e9;
+
+int tileOf(int column) { return column >> 6; }
+int placeInTile(const Column& column) { return (column.y & 63) * kPlaceTileSize + (column.x & 63); }
+
+std::uint64_t keyOf(int x, int y) {
+  return std::uint64_t{static_cast<std::uint32_t>(x)} << 32 | static_cast<std::uint32_t>(y);
+}
+std::uint64_t tileKey(const Column& column) { return keyOf(tileOf(column.x), tileOf(column.y)); }
+
+Column columnAt(double x_m, double y_m) {
+  return {static_cast<int>(std::floor(x_m / kColumn_m)), static_cast<int>(std::floor(y_m / kColumn_m))};
+}
+
+// The points that stand for what a target has.
+struct StandingPoints {
+  std::vector<Eigen::Vector3d> ground, other;
+};
+
+bool isLevel(const PackedNdtCell& cell) {
+  const float* const c = cell.inverse_covariance;
+  return c[5] > kLevelShare * (c[0] + c[3] + c[5]);
+}
+
+// The mean of a voxel, or the points around it that its distribution reaches where it is larger than a column.
+void addPointsOf(const PackedNdtCell& cell, const Eigen::Vector3d& mean, double edge_m,
+                 std::vector<Eigen::Vector3d>& points) {
+  points.push_back(mean);
+  if (edge_m <= kColumn_m) return;
+  const float* const c = cell.inverse_covariance;
+  Eigen::Matrix3d inverse_covariance;
+  inverse_covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(inverse_covariance);
+  const auto reach = [&](int k) -> Eigen::Vector3d {
+    return kReach_sigmas / std::sqrt(std::max(solver.eigenvalues()[k], 1e-3)) * solver.eigenvectors().col(k);
+  };
+  const Eigen::Vector3d along = reach(0), across = reach(1);
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      if (i != 0 || j != 0) points.push_back(mean + i * along + j * across);
+    }
+  }
+}
+
+StandingPoints pointsOf(const NdtTarget& target) {
+  StandingPoints points;
+  for (const NdtLevel& level : target.levels()) {
+    const std::vector<Eigen::Vector3d> means = level.means();
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      if (!(means[i].array().abs() < kFarthest_m).all()) continue;
+      const PackedNdtCell& cell = level.packedCells()[i];
+      const bool is_ground = target.labelled() ? cell.ground_share > 0.5F : isLevel(cell);
+      addPointsOf(cell, means[i], level.resolution(), is_ground ? points.ground : points.other);
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> withoutRoofs(const std::vector<Eigen::Vector3d>& level) {
+  const auto blockOf = [](const Eigen::Vector3d& point, int axis) {
+    return static_cast<int>(std::floor(point[axis] / kRoofBlock_m));
+  };
+  std::unordered_map<std::uint64_t, double> lowest;
+  for (const Eigen::Vector3d& point : level) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        double& height =
+            lowest.try_emplace(keyOf(blockOf(point, 0) + dx, blockOf(point, 1) + dy), point.z()).first->second;
+        height = std::min(height, point.z());
+      }
+    }
+  }
+  std::vector<Eigen::Vector3d> ground;
+  for (const Eigen::Vector3d& point : level) {
+    if (point.z() < lowest.at(keyOf(blockOf(point, 0), blockOf(point, 1))) + kRoof_m) ground.push_back(point);
+  }
+  return ground;
+}
+
+void GroundHeights::add(double x_m, double y_m, double z_m) {
+  if (!(std::max({std::abs(x_m), std::abs(y_m), std::abs(z_m)}) < kFarthest_m)) return;
+  const Column column = columnAt(x_m, y_m);
+  Tile& tile = tiles_[tileKey(column)];
+  const auto place = static_cast<std::size_t>(placeInTile(column));
+  const bool is_first = std::exchange(tile.steps[place], std::uint8_t{0}) == kUnknown;
+  const auto height_m = static_cast<float>(z_m);
+  if (is_first || height_m < tile.height_m[place]) tile.height_m[place] = height_m;
+}
+
+void GroundHeights::spread(int steps) {
+  std::vector<Column> border, next;
+  for (const auto& [key, tile] : tiles_) {
+    const int x = static_cast<std::int32_t>(key >> 32) * kPlaceTileSize;
+    const int y = static_cast<std::int32_t>(key & 0xFFFFFFFFU) * kPlaceTileSize;
+    for (int place = 0; place < kPlaceTileSize * kPlaceTileSize; ++place) {
+      if (tile.steps[static_cast<std::size_t>(place)] == 0) {
+        border.push_back({x + place % kPlaceTileSize, y + place / kPlaceTileSize});
+      }
+    }
+  }
+  // The same whatever the order of the tiles.
+  std::sort(border.begin(), border.end(),
+            [](const Column& a, const Column& b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
+  constexpr Column kNeighbours[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+  for (int step = 1; step <= steps; ++step) {
+    next.clear();
+    for (const Column& column : border) {
+      const float height_m = *at(column);
+      for (const Column& way : kNeighbours) {
+        const Column neighbour{column.x + way.x, column.y + way.y};
+        Tile& tile = tiles_[tileKey(neighbour)];
+        const auto place = static_cast<std::size_t>(placeInTile(neighbour));
+        if (tile.steps[place] != kUnknown) continue;
+        tile.steps[place] = static_cast<std::uint8_t>(step);
+        tile.height_m[place] = height_m;
+        next.push_back(neighbour);
+      }
+    }
+    border.swap(next);
+  }
+}
+
+std::optional<float> GroundHeights::at(const Column& column) const {
+  const auto tile = tiles_.find(tileKey(column));
+  const auto place = static_cast<std::size_t>(placeInTile(column));
+  if (tile == tiles_.end() || tile->second.steps[place] == kUnknown) return std::nullopt;
+  return tile->second.height_m[place];
+}
+
+std::uint8_t GroundHeights::stepsToSeen(const Column& column) const {
+  const auto tile = tiles_.find(tileKey(column));
+  return tile == tiles_.end() ? kUnknown : tile->second.steps[static_cast<std::size_t>(placeInTile(column))];
+}
+
+PlaceIndex::PlaceIndex(const NdtTarget& target) {
+  StandingPoints points = pointsOf(target);
+  if (!target.labelled()) points.ground = withoutRoofs(points.ground);
+  GroundHeights ground;
+  for (const Eigen::Vector3d& point : points.ground) ground.add(point.x(), point.y(), point.z());
+  ground.spread(kGroundGoesOn);
+
+  const auto tileAt = [this](const Column& column) -> Tile& {
+    const auto [found, is_new] = tile_numbers_.try_emplace(tileKey(column), tiles_.size());
+    if (is_new) tiles_.emplace_back().at = {tileOf(column.x), tileOf(column.y)};
+    return tiles_[found->second];
+  };
+  for (const Eigen::Vector3d& point : points.ground) tileAt(columnAt(point.x(), point.y()));
+  for (const Eigen::Vector3d& point : points.other) {
+    const Column column = columnAt(point.x(), point.y());
+    const std::optional<float> ground_m = ground.at(column);
+    if (!ground_m) continue;
+    const double layer = std::floor((point.z() - *ground_m) / kColumn_m);
+    if (!(layer >= 0.0 && layer < kPlaceLayers)) continue;
+    const auto word = static_cast<std::size_t>(layer) * kPlaceTileRows + static_cast<std::size_t>(column.y & 63);
+    tileAt(column).words[word] |= std::uint64_t{1} << (column.x & 63);
+  }
+  for (Tile& tile : tiles_) {
+    for (int place = 0; place < kPlaceTileSize * kPlaceTileSize; ++place) {
+      const int row = place / kPlaceTileSize, x = place % kPlaceTileSize;
+      const Column column{tile.at.x * kPlaceTileSize + x, tile.at.y * kPlaceTileSize + row};
+      if (ground.stepsToSeen(column) > kHiddenGround) continue;
+      tile.allowed[static_cast<std::size_t>(row)] |= std::uint64_t{1} << x;
+      tile.ground_m[static_cast<std::size_t>(place)] = *ground.at(column);
+    }
+  }
+  // In an order that depends on where tiles are alone.
+  const auto has_standing = [](const Tile& tile) {
+    return std::any_of(tile.allowed.begin(), tile.allowed.end(), [](std::uint64_t row) { return row != 0; });
+  };
+  std::sort(tiles_.begin(), tiles_.end(),
+            [](const Tile& a, const Tile& b) { return std::pair(a.at.y, a.at.x) < std::pair(b.at.y, b.at.x); });
+  const auto others = std::stable_partition(tiles_.begin(), tiles_.end(), has_standing);
+  standing_tile_count_ = static_cast<std::size_t>(others - tiles_.begin());
+  tile_numbers_.clear();
+  for (std::size_t i = 0; i < tiles_.size(); ++i) tile_numbers_.emplace(keyOf(tiles_[i].at.x, tiles_[i].at.y), i);
+  for (Tile& tile : tiles_) {
+    const auto next = tile_numbers_.find(keyOf(tile.at.x, tile.at.y + 1));
+    if (next == tile_numbers_.end()) continue;
+    const Tile& above = tiles_[next->second];
+    for (int layer = 0; layer < kPlaceLayers; ++layer) {
+      std::uint64_t* const words = tile.words.data() + layer * kPlaceTileRows;
+      std::copy_n(above.words.data() + layer * kPlaceTileRows, kRowsAtOnce, words + kPlaceTileSize);
+    }
+  }
+}
+
+PlaceTables PlaceIndex::tablesAround(const Tile& tile) const {
+  static const std::array<std::uint64_t, kPlaceTileWords> nothing{};
+  PlaceTables tables{};
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const auto found = tile_numbers_.find(keyOf(tile.at.x + dx, tile.at.y + dy));
+      tables.words[dy + 1][dx + 1] = (found == tile_numbers_.end() ? nothing : tiles_[found->second].words).data();
+    }
+  }
+  return tables;
+}
+
+}  // namespace saw_ndt::internal

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "localization/place_index_loops.h"
+#include "saw_ndt/map/ndt_target.h"
+
+namespace saw_ndt::internal {
+
+/// Edge of a column of the index, and height of its layers (m).
+constexpr double kColumn_m = 1.0;
+
+/// A column: x and y in units of kColumn_m, rounded down.
+struct Column {
+  int x = 0;
+  int y = 0;
+};
+
+/// The height of the ground under columns, where it has been seen and outward from there.
+class GroundHeights {
+ public:
+  static constexpr std::uint8_t kUnknown = 255;
+
+  /// Adds a point of ground (m). Ground that is farther out than a million columns is passed over.
+  void add(double x_m, double y_m, double z_m);
+  /// Gives columns that are at most so many steps from seen ground the height of the nearest; fewer than kUnknown.
+  void spread(int steps);
+
+  /// Of the ground under a column (m); nothing where it is not known.
+  std::optional<float> at(const Column& column) const;
+  /// How many steps a column is from seen ground, or kUnknown.
+  std::uint8_t stepsToSeen(const Column& column) const;
+
+ private:
+  struct Tile {
+    std::array<float, kPlaceTileSize * kPlaceTileSize> height_m{};  // the lowest of each column, before spread()
+    std::array<std::uint8_t, kPlaceTileSize * kPlaceTileSize> steps;
+    Tile() { steps.fill(kUnknown); }
+  };
+
+  std::unordered_map<std::uint64_t, Tile> tiles_;
+};
+
+/// Of points that may be ground, those less than 2 m above the lowest within some 10 m.
+std::vector<Eigen::Vector3d> withoutRoofs(const std::vector<Eigen::Vector3d>& level);
+
+/// What stands where in a map, by height above the ground: bits, for each column of 1 m and each of 32 layers, and the
+/// columns in which a vehicle may stand. It is what a scan is looked up in when nobody knows where it was taken.
+class PlaceIndex {
+ public:
+  struct Tile {
+    Column at;  ///< in tiles
+    std::array<std::uint64_t, kPlaceTileWords> words{};
+    std::array<std::uint64_t, kPlaceTileSize> allowed{};  ///< a bit for each column in which a vehicle may stand
+    std::array<float, kPlaceTileSize * kPlaceTileSize> ground_m{};  ///< its ground, row by row
+  };
+
+  explicit PlaceIndex(const NdtTarget& target);
+
+  /// Those in which a vehicle may stand come first.
+  const std::vector<Tile>& tiles() const { return tiles_; }
+  /// How many tiles have a column in which a vehicle may stand.
+  std::size_t standingTileCount() const { return standing_tile_count_; }
+  /// A tile and its neighbours.
+  PlaceTables tablesAround(const Tile& tile) const;
+
+ private:
+  std::vector<Tile> tiles_;
+  std::unordered_map<std::uint64_t, std::size_t> tile_numbers_;
+  std::size_t standing_tile_count_ = 0;
+};
+
+}  // namespace saw_ndt::internal
