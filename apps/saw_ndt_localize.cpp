@@ -1,4 +1,5 @@
 #include <iostream>
+#include <optional>
 
 #include "app_options.h"
 #include "output_folder.h"
@@ -15,11 +16,15 @@ namespace {
 constexpr char kDescription[] =
     "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
     "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
-    "is printed too. A scan that is rejected gets the pose that was predicted for it; where none is located the drive "
-    "has "
-    "failed. Give -sensor, -ground-rule and "
+    "is printed too. A scan that is rejected gets the pose that was predicted for it, and none as long as nobody knows "
+    "where the vehicle is; where none is located the drive has failed. Give -sensor, -ground-rule and "
     "-mounting-pitch-deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
-    "pose, and all together they tell the errors.";
+    "pose, and all together they tell the errors. A vehicle that is lost is looked for, first around its prediction, "
+    "then in all of the map.";
+
+// An uncertainty is given as how far it reaches.
+constexpr double kSigmas = 3.0;
+constexpr char kUnknown[] = "unknown";
 
 saw_ndt::NdtTarget loadTarget(const std::string& file, const saw_ndt::LocalizationMethod& method, int threads) {
   saw_ndt::NdtTarget target = saw_ndt::NdtTarget::load(file, method.voxels, threads);
@@ -36,8 +41,12 @@ saw_ndt::NdtTarget loadTarget(const std::string& file, const saw_ndt::Localizati
 int main(int argc, char** argv) {
   std::string sequence_folder, map_file, out_dir, poses_file, scans = ":";
   double skip_s = 3.0;
-  std::vector<double> initial_pose(6, 0.0), base_lidar(6, 0.0);
+  std::string initial_pose;
+  std::vector<double> base_lidar(6, 0.0);
   saw_ndt::LocalizerOptions options;
+  double initial_radius_m = kSigmas * options.prediction.initial_sigma_m;
+  double initial_yaw_range_deg = kSigmas * options.prediction.initial_sigma_deg;
+  bool no_search = false;
   saw_ndt::SegmentationArguments segmentation;
   std::string method = options.method.name;
   saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
@@ -51,7 +60,12 @@ int main(int argc, char** argv) {
   app.addOption("poses", &poses_file, "FILE",
                 "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
   app.addOption("initial-pose", &initial_pose, saw_ndt::kPosePlaceholder,
-                "pose of the base in the map at the first scan, metres and degrees (default: its reference pose)");
+                "pose of the base in the map at the first scan, metres and degrees, or `unknown`: it is looked for in "
+                "all of the map (default: its reference pose)");
+  app.addOption("initial-radius", &initial_radius_m, "METRES", "how far from there the base may be");
+  app.addOption("initial-yaw-range", &initial_yaw_range_deg, "DEGREES",
+                "how much its heading may differ from that, 180 for any");
+  app.addFlag("no-search", &no_search, "do not look for a pose that is lost, but align from predictions alone");
   app.addOption("base-lidar", &base_lidar, saw_ndt::kPosePlaceholder,
                 "pose of the LiDAR on the vehicle's base, metres and degrees; all zero: the base is the LiDAR");
   app.addOption("source-voxel", &options.source_voxel_size_m, "METRES",
@@ -75,7 +89,22 @@ int main(int argc, char** argv) {
     options.segmentation = segmentation.options();
     options.alignment.threads = app.threads();
     options.T_base_lidar = saw_ndt::transformOf(base_lidar);
-    saw_ndt::checkedUsage([&] { options.check(); });
+    options.search = !no_search;
+    options.prediction.initial_sigma_m = initial_radius_m / kSigmas;
+    options.prediction.initial_sigma_deg = initial_yaw_range_deg / kSigmas;
+    saw_ndt::checkedUsage([&] {
+      saw_ndt::checkOption(initial_radius_m > 0.0, "initial-radius", initial_radius_m, "positive");
+      saw_ndt::checkOption(initial_yaw_range_deg > 0.0 && initial_yaw_range_deg <= 180.0, "initial-yaw-range",
+                           initial_yaw_range_deg, "positive and at most 180");
+      options.check();
+    });
+    if (no_search && initial_pose == kUnknown) {
+      throw saw_ndt::UsageError("option -initial-pose unknown: excludes -no-search");
+    }
+    std::optional<Eigen::Isometry3d> T_map_base_initial;
+    if (!initial_pose.empty() && initial_pose != kUnknown) {
+      T_map_base_initial = saw_ndt::transformOf(initial_pose, "-initial-pose");
+    }
     const saw_ndt::KittiSequence sequence(sequence_folder, poses_file);
     const std::vector<int> selected =
         saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, sequence.scanCount()); });
@@ -86,10 +115,12 @@ int main(int argc, char** argv) {
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
     saw_ndt::Localizer localizer(loadTarget(map_file, options.method, app.threads()), options);
-    localizer.setInitialPose(app.isGiven("initial-pose")
-                                 ? saw_ndt::transformOf(initial_pose)
-                                 : sequence.posesLidar()[static_cast<std::size_t>(selected.front())] *
-                                       options.T_base_lidar.inverse());
+    if (initial_pose == kUnknown) {
+      localizer.setUnknownPose();
+    } else {
+      localizer.setInitialPose(T_map_base_initial.value_or(
+          sequence.posesLidar()[static_cast<std::size_t>(selected.front())] * options.T_base_lidar.inverse()));
+    }
 
     saw_ndt::OutputFolder folder(out_dir);
     saw_ndt::ProgressBar progress(selected.size());

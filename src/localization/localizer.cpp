@@ -1,5 +1,6 @@
 #include "saw_ndt/localization/localizer.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -74,6 +75,7 @@ void LocalizerOptions::check() const {
   prediction.check();
   alignment.check();
   acceptance.check();
+  global_search.check();
   preparationOptions(*this).check();
 }
 
@@ -86,6 +88,7 @@ Localizer::Localizer(const std::string& map_file, const LocalizerOptions& option
 Localizer::Localizer(const NdtTarget& target, const LocalizerOptions& options)
     : Localizer(alignerTo(target, options), options) {
   target_ = target;
+  if (options.search) global_search_.emplace(target, options.global_search);
 }
 
 Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
@@ -94,6 +97,23 @@ Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
       prediction_(options.prediction),
       aligner_(std::move(aligner)),
       judge_(options.acceptance) {}
+
+const char* toString(SearchExtent extent) {
+  switch (extent) {
+    case SearchExtent::NONE:
+      return "";
+    case SearchExtent::AROUND:
+      return "around";
+    case SearchExtent::EVERYWHERE:
+      return "everywhere";
+  }
+  return "unknown";
+}
+
+void Localizer::setUnknownPose() {
+  if (!global_search_) throw std::logic_error("setUnknownPose: there is no search, or no target to search in");
+  prediction_.resetUnknown();
+}
 
 // An alignment from one start, and what is thought of it.
 struct Localizer::Attempt {
@@ -104,7 +124,24 @@ struct Localizer::Attempt {
   bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
 };
 
+// Where a pose was looked for, and what the search brought to light.
+struct Localizer::Search {
+  SearchExtent extent = SearchExtent::NONE;
+  std::vector<Eigen::Isometry3d> starts;  // to be compared with the pose that is chosen
+};
+
 namespace {
+
+// Of the candidates of a search, so many at most are aligned, and none that has less than this share of the cells of
+// the best: right ones have 0.6 to 0.9 of the cells of a scan, and the next best in a city 0.5.
+constexpr std::size_t kMostAlignedCandidates = 5;
+constexpr double kLeastShareOfBest = 0.7;
+
+// The largest region that is searched around a prediction, the smallest one, and the least headings.
+constexpr double kGreatestRegion_m = 300.0;
+constexpr double kLeastRegion_m = 5.0;
+constexpr double kLeastRegion_deg = 15.0;
+constexpr double kRegion_sigmas = 3.0;
 
 // How far apart poses are different places (m), beside what free directions tell; and the share of the way along these,
 // which may be curved.
@@ -113,6 +150,20 @@ constexpr double kCurvedShare = 0.1;
 
 // A vehicle that is faster follows the bend of its road (m/s).
 constexpr double kMovingSpeed_mps = 1.0;
+
+// As far around a pose as it is uncertain.
+SearchRegion regionOf(const PoseExpectation& expectation) {
+  const Matrix6d& covariance = expectation.covariance;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> position(covariance.topLeftCorner<2, 2>(),
+                                                                Eigen::EigenvaluesOnly);
+  const double sigma_m = std::sqrt(position.eigenvalues().maxCoeff());
+  const double sigma_deg = degreesFromRadians(std::sqrt(covariance(5, 5)));
+  SearchRegion region;
+  region.T_map_base = expectation.T_map_base;
+  region.radius_m = std::clamp(kRegion_sigmas * sigma_m, kLeastRegion_m, kGreatestRegion_m);
+  region.heading_deg = std::clamp(kRegion_sigmas * sigma_deg, kLeastRegion_deg, 180.0);
+  return region;
+}
 
 bool isElsewhere(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_rival) {
   Vector6d away = inLengths(poseDifference(alignment.T_map_source, T_map_rival));
@@ -204,12 +255,16 @@ std::vector<Eigen::Isometry3d> Localizer::rivalsOf(const SourcePoints& source, c
   return rivals;
 }
 
-Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const Attempt& found,
+Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const Attempt& found, const Search& search,
                                             const PoseExpectation& expectation) {
   constexpr std::size_t kComparedPoints = 6000;
   const double min_advantage_sigmas = options_.acceptance.min_advantage_sigmas;
   if (!target_ || min_advantage_sigmas == 0.0) return found;
-  const std::vector<Eigen::Isometry3d> rivals = rivalsOf(source, found, expectation);
+  std::vector<Eigen::Isometry3d> rivals = rivalsOf(source, found, expectation);
+  for (const Eigen::Isometry3d& start : search.starts) {
+    const AlignmentResult rival = aligner_(source, start);
+    if (rival.converged()) rivals.push_back(rival.T_map_source);
+  }
   const FitComparison comparison(*target_, source, kComparedPoints);
   Attempt best = found;
   FitComparison::Fits of_best = comparison.fitsAt(best.alignment.T_map_source);
@@ -239,18 +294,61 @@ Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const At
   return best;
 }
 
-Localizer::Attempt Localizer::find(const SourcePoints& source, const PoseExpectation& expectation) {
+Localizer::Attempt Localizer::fromPrediction(const SourcePoints& source, const PoseExpectation& expectation) {
   const TrackState& track = prediction_.state();
-  Attempt found = attempt(source, expectation.T_map_base, expectation);
+  const Attempt found = attempt(source, expectation.T_map_base, expectation);
   // The motion may have been a wrong one.
   constexpr double kAnotherStart_m = 1.0;
   const double away_m = (track.T_map_base.translation() - expectation.T_map_base.translation()).norm();
-  if (!found.accepted() && track.stamp_s && away_m > kAnotherStart_m) {
-    const Attempt again = attempt(source, track.T_map_base, expectation);
-    if (again.accepted()) found = again;
+  if (found.accepted() || !track.stamp_s || away_m <= kAnotherStart_m) return found;
+  const Attempt again = attempt(source, track.T_map_base, expectation);
+  return again.accepted() ? again : found;
+}
+
+// Aligns from the candidates of a search, the best first, until one is accepted; the others are left to be compared.
+Localizer::Attempt Localizer::fromSearch(const SourcePoints& source, const PoseExpectation& expectation,
+                                         Search& search) {
+  std::optional<SearchRegion> region;
+  if (search.extent == SearchExtent::AROUND) region = regionOf(expectation);
+  std::vector<PoseCandidate> candidates = global_search_->candidates(source, region, options_.alignment.threads);
+  candidates.resize(std::min(candidates.size(), kMostAlignedCandidates));
+  search.starts.clear();
+  Attempt found;
+  for (const PoseCandidate& candidate : candidates) {
+    if (candidate.matched_share < kLeastShareOfBest * candidates.front().matched_share) break;
+    if (found.accepted()) {
+      search.starts.push_back(candidate.T_map_base);
+      continue;
+    }
+    const Attempt next =
+        attempt(source, candidate.T_map_base, region ? expectation : judge_.expectAnywhere(candidate.T_map_base));
+    if (next.accepted() || &candidate == &candidates.front()) found = next;
+    if (!next.accepted() && next.alignment.converged()) search.starts.push_back(next.alignment.T_map_source);
+  }
+  return found;
+}
+
+Localizer::Attempt Localizer::find(const SourcePoints& source, PoseExpectation& expectation, Search& search) {
+  const TrackState& track = prediction_.state();
+  Attempt found;
+  if (track.pose_known) found = fromPrediction(source, expectation);
+  const bool is_start = !track.stamp_s || track.status != TrackStatus::TRACKING;
+  if (global_search_ && track.pose_known && (!found.accepted() || (is_start && expectation.vague))) {
+    search.extent = SearchExtent::AROUND;
+    const Attempt other = fromSearch(source, expectation, search);
+    if (found.accepted() && other.accepted()) search.starts.push_back(other.alignment.T_map_source);
+    if (!found.accepted() && other.accepted()) found = other;
+  }
+  if (global_search_ && !found.accepted() && track.status == TrackStatus::LOST) {
+    search.extent = SearchExtent::EVERYWHERE;
+    const Attempt other = fromSearch(source, expectation, search);
+    if (other.accepted() || !track.pose_known) {
+      found = other;
+      expectation = judge_.expectAnywhere(other.T_map_base);
+    }
   }
   if (!found.accepted() || !judge_.isDoubtful(found.alignment, found.T_map_base, expectation, track)) return found;
-  found = withoutRivals(source, found, expectation);
+  found = withoutRivals(source, found, search, expectation);
   if (found.accepted()) {
     found.acceptance = judge_.judgeDoubtful(found.alignment, found.T_map_base, expectation, track);
   }
@@ -263,16 +361,17 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
   LocalizationResult result;
   result.stamp_s = stamp_s;
   result.T_map_base_predicted = prediction_.predict(stamp_s);
-  const PoseExpectation expectation =
-      judge_.expect(result.T_map_base_predicted, prediction_.predictedCovariance(stamp_s), prediction_.state(), stamp_s,
-                    options_.prediction.max_turn_rate_radps);
+  PoseExpectation expectation = judge_.expect(result.T_map_base_predicted, prediction_.predictedCovariance(stamp_s),
+                                              prediction_.state(), stamp_s, options_.prediction.max_turn_rate_radps);
   const SourcePoints& source = preparation_.prepare(scan);
   result.source_points = source.size();
   result.times.segment_ms = preparation_.segmentMilliseconds();
   result.times.filter_ms = preparation_.filterMilliseconds();
 
   const internal::Stopwatch alignment;
-  const Attempt found = find(source, expectation);
+  Search search;
+  const Attempt found = find(source, expectation, search);
+  result.search = search.extent;
   result.times.align_ms = alignment.milliseconds();
 
   result.alignment = found.alignment;
@@ -282,12 +381,16 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s) {
     result.T_map_base = found.T_map_base;
     result.free_directions = found.alignment.free_directions;
     MeasuredPose pose{found.T_map_base, found.alignment.covariance, found.alignment.free_directions};
-    pose.learn_velocity = !prediction_.isSurprising(pose, stamp_s);
     if (std::isfinite(found.alignment.overlap)) pose.overlap = found.alignment.overlap;
-    result.covariance = prediction_.accept(pose, stamp_s);
+    if (search.extent == SearchExtent::EVERYWHERE) {
+      result.covariance = prediction_.restart(pose, stamp_s);
+    } else {
+      pose.learn_velocity = !prediction_.isSurprising(pose, stamp_s);
+      result.covariance = prediction_.accept(pose, stamp_s);
+    }
   } else {
     result.T_map_base = result.T_map_base_predicted;
-    result.covariance = expectation.covariance;
+    result.covariance = prediction_.predictedCovariance(stamp_s);
     prediction_.reject(stamp_s);
   }
   result.track = prediction_.state();

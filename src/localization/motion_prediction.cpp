@@ -43,6 +43,9 @@ constexpr double kSureSigma_m = 0.1;
 // The squared Mahalanobis distance of six numbers that one error in a thousand exceeds.
 constexpr double kUnlikelySquaredMahalanobis = 22.5;
 
+// Standard deviation of a position that nobody knows (m).
+constexpr double kAnywhere_m = 1.0e5;
+
 // Adding up the recent past of the overlap.
 constexpr double kNewOverlapShare = 0.1;
 
@@ -78,6 +81,8 @@ Vector6d poseDifference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& 
   difference << to.translation() - from.translation(), rotationVector(to.linear() * from.linear().transpose());
   return difference;
 }
+
+Matrix6d anywhereCovariance() { return diagonal(kAnywhere_m, kPi); }
 
 bool isUnlikely(const Vector6d& error, const Matrix6d& covariance) {
   return error.dot(covariance.ldlt().solve(error)) > kUnlikelySquaredMahalanobis;
@@ -116,12 +121,32 @@ void MotionPrediction::reset(const Eigen::Isometry3d& T_map_base) {
   state_ = TrackState();
   late_scans_ = 0;
   state_.status = TrackStatus::TRACKING;
+  state_.pose_known = true;
   state_.T_map_base = T_map_base;
   state_.covariance = diagonal(options_.initial_sigma_m, radiansFromDegrees(options_.initial_sigma_deg));
   covariance_.setZero();
   covariance_.block<6, 6>(0, 0) = state_.covariance;
   covariance_.block<6, 6>(6, 6) = diagonal(options_.unknown_speed_sigma_mps, kUnknownTurnRate_radps);
   covariance_.block<6, 6>(12, 12) = diagonal(options_.acceleration_sigma_mps2, options_.turn_acceleration_sigma_radps2);
+}
+
+void MotionPrediction::resetUnknown() {
+  reset(Eigen::Isometry3d::Identity());
+  state_.status = TrackStatus::LOST;
+  state_.pose_known = false;
+  state_.covariance = anywhereCovariance();
+  covariance_.block<6, 6>(0, 0) = state_.covariance;
+}
+
+Matrix6d MotionPrediction::restart(const MeasuredPose& pose, double stamp_s) {
+  checkOption(std::isfinite(stamp_s), "stamp_s", stamp_s, "finite");
+  const std::optional<double> usual_overlap = state_.usual_overlap;
+  reset(pose.T_map_base);
+  state_.usual_overlap = usual_overlap ? usual_overlap : pose.overlap;
+  state_.covariance = pose.covariance;
+  covariance_.block<6, 6>(0, 0) = pose.covariance;
+  state_.stamp_s = stamp_s;
+  return state_.covariance;
 }
 
 // What the stamps say of the time since the last pose, and how far they are believed.
@@ -204,6 +229,7 @@ Matrix6d MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
     return remaining * predicted * remaining.transpose() + gain * pose.covariance * gain.transpose();
   };
   state_.status = TrackStatus::TRACKING;
+  state_.pose_known = true;
   state_.rejected_scans = 0;
   if (!pose.learn_velocity) late_scans_ = 0;
   if (pose.learn_velocity && comesLate(interval)) return updated().topLeftCorner<6, 6>();
@@ -263,7 +289,8 @@ Matrix6d MotionPrediction::learnVelocity(const MeasuredPose& pose, double stamp_
 void MotionPrediction::reject(double stamp_s) {
   if (state_.status == TrackStatus::NOT_INITIALIZED) return;
   ++state_.rejected_scans;
-  state_.status = state_.rejected_scans >= options_.lost_after_scans ? TrackStatus::LOST : TrackStatus::COASTING;
+  const bool is_lost = !state_.pose_known || state_.rejected_scans >= options_.lost_after_scans;
+  state_.status = is_lost ? TrackStatus::LOST : TrackStatus::COASTING;
   if (!std::isfinite(stamp_s)) return;
   if (!state_.stamp_s) {
     state_.stamp_s = stamp_s;

@@ -41,20 +41,15 @@ Column columnAt(double x_m, double y_m) {
   return {static_cast<int>(std::floor(x_m / kColumn_m)), static_cast<int>(std::floor(y_m / kColumn_m))};
 }
 
-// The points that stand for what a target has.
-struct StandingPoints {
-  std::vector<Eigen::Vector3d> ground, other;
-};
-
 bool isLevel(const PackedNdtCell& cell) {
   const float* const c = cell.inverse_covariance;
   return c[5] > kLevelShare * (c[0] + c[3] + c[5]);
 }
 
-// The mean of a voxel, or the points around it that its distribution reaches where it is larger than a column.
-void addPointsOf(const PackedNdtCell& cell, const Eigen::Vector3d& mean, double edge_m,
-                 std::vector<Eigen::Vector3d>& points) {
-  points.push_back(mean);
+// Visits the mean of a voxel, and the points around it that its distribution reaches where it is larger than a column.
+template <typename Visit>
+void visitPointsOf(const PackedNdtCell& cell, const Eigen::Vector3d& mean, double edge_m, const Visit& visit) {
+  visit(mean);
   if (edge_m <= kColumn_m) return;
   const float* const c = cell.inverse_covariance;
   Eigen::Matrix3d inverse_covariance;
@@ -67,23 +62,25 @@ void addPointsOf(const PackedNdtCell& cell, const Eigen::Vector3d& mean, double 
   const Eigen::Vector3d along = reach(0), across = reach(1);
   for (int i = -1; i <= 1; ++i) {
     for (int j = -1; j <= 1; ++j) {
-      if (i != 0 || j != 0) points.push_back(mean + i * along + j * across);
+      if (i != 0 || j != 0) visit(mean + i * along + j * across);
     }
   }
 }
 
-StandingPoints pointsOf(const NdtTarget& target) {
-  StandingPoints points;
+// Visits points that stand for what a target has: its ground, or all the rest.
+template <typename Visit>
+void visitPoints(const NdtTarget& target, bool ground, const Visit& visit) {
   for (const NdtLevel& level : target.levels()) {
-    const std::vector<Eigen::Vector3d> means = level.means();
-    for (std::size_t i = 0; i < means.size(); ++i) {
-      if (!(means[i].array().abs() < kFarthest_m).all()) continue;
+    const std::vector<VoxelCoordinate> voxels = level.index().voxels();
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
       const PackedNdtCell& cell = level.packedCells()[i];
       const bool is_ground = target.labelled() ? cell.ground_share > 0.5F : isLevel(cell);
-      addPointsOf(cell, means[i], level.resolution(), is_ground ? points.ground : points.other);
+      if (is_ground != ground) continue;
+      const Eigen::Vector3d mean = (voxels[i].cast<double>().array() + 0.5).matrix() * level.resolution() +
+                                   Eigen::Map<const Eigen::Vector3f>(cell.mean_from_centre).cast<double>();
+      if ((mean.array().abs() < kFarthest_m).all()) visitPointsOf(cell, mean, level.resolution(), visit);
     }
   }
-  return points;
 }
 
 }  // namespace
@@ -109,21 +106,20 @@ std::vector<Eigen::Vector3d> withoutRoofs(const std::vector<Eigen::Vector3d>& le
   return ground;
 }
 
-void GroundHeights::add(double x_m, double y_m, double z_m) {
-  if (!(std::max({std::abs(x_m), std::abs(y_m), std::abs(z_m)}) < kFarthest_m)) return;
-  const Column column = columnAt(x_m, y_m);
+void GroundHeights::add(const Eigen::Vector3d& point) {
+  const Column column = columnAt(point.x(), point.y());
   Tile& tile = tiles_[tileKey(column)];
   const auto place = static_cast<std::size_t>(placeInTile(column));
   const bool is_first = std::exchange(tile.steps[place], std::uint8_t{0}) == kUnknown;
-  const auto height_m = static_cast<float>(z_m);
+  const auto height_m = static_cast<float>(point.z());
   if (is_first || height_m < tile.height_m[place]) tile.height_m[place] = height_m;
 }
 
 void GroundHeights::spread(int steps) {
   std::vector<Column> border, next;
-  for (const auto& [key, tile] : tiles_) {
-    const int x = static_cast<std::int32_t>(key >> 32) * kPlaceTileSize;
-    const int y = static_cast<std::int32_t>(key & 0xFFFFFFFFU) * kPlaceTileSize;
+  for (const Column& at : tiles()) {
+    const Tile& tile = tiles_.at(keyOf(at.x, at.y));
+    const int x = at.x * kPlaceTileSize, y = at.y * kPlaceTileSize;
     for (int place = 0; place < kPlaceTileSize * kPlaceTileSize; ++place) {
       if (tile.steps[static_cast<std::size_t>(place)] == 0) {
         border.push_back({x + place % kPlaceTileSize, y + place / kPlaceTileSize});
@@ -134,13 +130,21 @@ void GroundHeights::spread(int steps) {
   std::sort(border.begin(), border.end(),
             [](const Column& a, const Column& b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
   constexpr Column kNeighbours[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+  std::uint64_t latest_key = 0;
+  Tile* latest = nullptr;  // neighbours are mostly in the same tile
+  const auto tileOfColumn = [&](const Column& column) -> Tile& {
+    const std::uint64_t key = tileKey(column);
+    if (latest == nullptr || key != latest_key) latest = &tiles_[key];
+    latest_key = key;
+    return *latest;
+  };
   for (int step = 1; step <= steps; ++step) {
     next.clear();
     for (const Column& column : border) {
-      const float height_m = *at(column);
+      const float height_m = tileOfColumn(column).height_m[static_cast<std::size_t>(placeInTile(column))];
       for (const Column& way : kNeighbours) {
         const Column neighbour{column.x + way.x, column.y + way.y};
-        Tile& tile = tiles_[tileKey(neighbour)];
+        Tile& tile = tileOfColumn(neighbour);
         const auto place = static_cast<std::size_t>(placeInTile(neighbour));
         if (tile.steps[place] != kUnknown) continue;
         tile.steps[place] = static_cast<std::uint8_t>(step);
@@ -159,33 +163,46 @@ std::optional<float> GroundHeights::at(const Column& column) const {
   return tile->second.height_m[place];
 }
 
+std::vector<Column> GroundHeights::tiles() const {
+  std::vector<Column> tiles;
+  for (const auto& [key, tile] : tiles_) {
+    tiles.push_back({static_cast<std::int32_t>(key >> 32), static_cast<std::int32_t>(key & 0xFFFFFFFFU)});
+  }
+  return tiles;
+}
+
 std::uint8_t GroundHeights::stepsToSeen(const Column& column) const {
   const auto tile = tiles_.find(tileKey(column));
   return tile == tiles_.end() ? kUnknown : tile->second.steps[static_cast<std::size_t>(placeInTile(column))];
 }
 
 PlaceIndex::PlaceIndex(const NdtTarget& target) {
-  StandingPoints points = pointsOf(target);
-  if (!target.labelled()) points.ground = withoutRoofs(points.ground);
   GroundHeights ground;
-  for (const Eigen::Vector3d& point : points.ground) ground.add(point.x(), point.y(), point.z());
+  std::vector<Eigen::Vector3d> level;
+  visitPoints(target, true, [&](const Eigen::Vector3d& point) {
+    if (target.labelled()) {
+      ground.add(point);
+    } else {
+      level.push_back(point);
+    }
+  });
+  for (const Eigen::Vector3d& point : withoutRoofs(level)) ground.add(point);
+  for (const Column& tile : ground.tiles()) {
+    tile_numbers_.emplace(keyOf(tile.x, tile.y), tiles_.size());
+    tiles_.emplace_back().at = tile;
+  }
   ground.spread(kGroundGoesOn);
-
-  const auto tileAt = [this](const Column& column) -> Tile& {
-    const auto [found, is_new] = tile_numbers_.try_emplace(tileKey(column), tiles_.size());
-    if (is_new) tiles_.emplace_back().at = {tileOf(column.x), tileOf(column.y)};
-    return tiles_[found->second];
-  };
-  for (const Eigen::Vector3d& point : points.ground) tileAt(columnAt(point.x(), point.y()));
-  for (const Eigen::Vector3d& point : points.other) {
+  visitPoints(target, false, [&](const Eigen::Vector3d& point) {
     const Column column = columnAt(point.x(), point.y());
     const std::optional<float> ground_m = ground.at(column);
-    if (!ground_m) continue;
+    if (!ground_m) return;
     const double layer = std::floor((point.z() - *ground_m) / kColumn_m);
-    if (!(layer >= 0.0 && layer < kPlaceLayers)) continue;
+    if (!(layer >= 0.0 && layer < kPlaceLayers)) return;
+    const auto [found, is_new] = tile_numbers_.try_emplace(tileKey(column), tiles_.size());
+    if (is_new) tiles_.emplace_back().at = {tileOf(column.x), tileOf(column.y)};
     const auto word = static_cast<std::size_t>(layer) * kPlaceTileRows + static_cast<std::size_t>(column.y & 63);
-    tileAt(column).words[word] |= std::uint64_t{1} << (column.x & 63);
-  }
+    tiles_[found->second].words[word] |= std::uint64_t{1} << (column.x & 63);
+  });
   for (Tile& tile : tiles_) {
     for (int place = 0; place < kPlaceTileSize * kPlaceTileSize; ++place) {
       const int row = place / kPlaceTileSize, x = place % kPlaceTileSize;

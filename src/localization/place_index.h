@@ -26,11 +26,13 @@ class GroundHeights {
  public:
   static constexpr std::uint8_t kUnknown = 255;
 
-  /// Adds a point of ground (m). Ground that is farther out than a million columns is passed over.
-  void add(double x_m, double y_m, double z_m);
+  /// Adds a point of ground (m), less than 1e9 m away.
+  void add(const Eigen::Vector3d& point);
   /// Gives columns that are at most so many steps from seen ground the height of the nearest; fewer than kUnknown.
   void spread(int steps);
 
+  /// The tiles in which ground is known.
+  std::vector<Column> tiles() const;
   /// Of the ground under a column (m); nothing where it is not known.
   std::optional<float> at(const Column& column) const;
   /// How many steps a column is from seen ground, or kUnknown.

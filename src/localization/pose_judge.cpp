@@ -125,6 +125,19 @@ PoseExpectation PoseJudge::expect(const Eigen::Isometry3d& T_map_base_predicted,
   return expectation;
 }
 
+PoseExpectation PoseJudge::expectAnywhere(const Eigen::Isometry3d& T_map_base) const {
+  PoseExpectation expectation;
+  expectation.T_map_base = T_map_base;
+  // What is free is not known at all.
+  expectation.covariance = anywhereCovariance();
+  expectation.max_correction_m = kSigmas * largestSigma(expectation.covariance.topLeftCorner<3, 3>());
+  expectation.max_correction_deg = 180.0;
+  expectation.search_radius_m = kSigmas * kFreeSigma_m;
+  expectation.unsure = true;
+  expectation.vague = true;
+  return expectation;
+}
+
 Acceptance PoseJudge::judge(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                             const PoseExpectation& expectation) const {
   if (alignment.status == AlignmentStatus::UNDETERMINED) {

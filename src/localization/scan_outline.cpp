@@ -57,7 +57,7 @@ std::uint64_t scattered(std::uint64_t key) {
 ScanOutline outlineOf(const SourcePoints& source, std::size_t most_cells) {
   const LabelledPoints points = pointsOf(source);
   GroundHeights ground;
-  for (const Eigen::Vector3d& point : points.ground) ground.add(point.x(), point.y(), point.z());
+  for (const Eigen::Vector3d& point : points.ground) ground.add(point);
   ground.spread(kGroundGoesOn);
   ScanOutline outline;
   outline.base_height_m = -static_cast<double>(ground.at({0, 0}).value_or(0.0F));

@@ -48,7 +48,7 @@ void writeFrames(const std::filesystem::path& path, const DriveLocalization& run
   out << "scan,stamp,accepted,reason,converged,iterations,likelihood,correction_m,correction_deg,source_points,"
          "segment_ms,filter_ms,align_ms,total_ms,file,state,evaluations,unweighted_likelihood,non_ground_likelihood,"
          "nearest_voxel_likelihood,degenerate,overlap,sigma_x_m,sigma_y_m,sigma_z_m,sigma_roll_deg,sigma_pitch_deg,"
-         "sigma_yaw_deg\n";
+         "sigma_yaw_deg,search\n";
   out << std::fixed;
   for (std::size_t i = 0; i < run.results.size(); ++i) {
     const LocalizationResult& r = run.results[i];
@@ -63,9 +63,15 @@ void writeFrames(const std::filesystem::path& path, const DriveLocalization& run
         << ',' << r.alignment.overlap;
     const Vector6d sigma = standardDeviations(r.covariance, r.T_map_base.linear());
     for (int k = 0; k < 6; ++k) out << ',' << (k < 3 ? sigma[k] : degreesFromRadians(sigma[k]));
-    out << '\n';
+    out << ',' << toString(r.search) << '\n';
   }
   output.commit();
+}
+
+std::vector<double> stampsOf(const std::vector<StampedPose>& trajectory) {
+  std::vector<double> stamps_s;
+  for (const StampedPose& pose : trajectory) stamps_s.push_back(pose.stamp_s);
+  return stamps_s;
 }
 
 void addStates(const DriveLocalization& run, LocalizationSummary& summary) {
@@ -111,15 +117,17 @@ LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptio
       mean(collect(run, [](const R& r) { return r.alignment.likelihoods.non_ground; }));
   summary.peak_rss_mb = peakResidentMegabytes();
   summary.threads = internal::threadCount(options.alignment.threads);
-  const std::vector<double> stamps_s = collect(run, [](const R& r) { return r.stamp_s; });
-  if (!run.T_map_lidar_reference.empty() && anyScanAfterSkip(stamps_s, skip_s)) {
+  if (!run.T_map_lidar_reference.empty()) {
     const Eigen::Isometry3d T_lidar_base = options.T_base_lidar.inverse();
     std::vector<StampedPose> reference, estimate;
     for (std::size_t i = 0; i < run.results.size(); ++i) {
-      reference.push_back({stamps_s[i], run.T_map_lidar_reference[i] * T_lidar_base});
-      estimate.push_back({stamps_s[i], run.results[i].T_map_base});
+      if (!run.results[i].track.pose_known) continue;
+      reference.push_back({run.results[i].stamp_s, run.T_map_lidar_reference[i] * T_lidar_base});
+      estimate.push_back({run.results[i].stamp_s, run.results[i].T_map_base});
     }
-    summary.metrics = evaluateTrajectory(reference, estimate, skip_s);
+    if (!estimate.empty() && anyScanAfterSkip(stampsOf(estimate), skip_s)) {
+      summary.metrics = evaluateTrajectory(reference, estimate, skip_s);
+    }
   }
   return summary;
 }
@@ -132,6 +140,7 @@ void writeLocalization(const std::filesystem::path& folder, const DriveLocalizat
   std::vector<StampedPose> base_poses;
   std::vector<Eigen::Isometry3d> camera_poses;
   for (const LocalizationResult& result : run.results) {
+    if (!result.track.pose_known) continue;
     base_poses.push_back({result.stamp_s, result.T_map_base});
     camera_poses.push_back(cameraPose(result.T_map_base * T_base_lidar, T_camera_lidar));
   }

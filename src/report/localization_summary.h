@@ -44,7 +44,7 @@ LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptio
 std::string toJsonText(const LocalizationSummary& summary);
 
 /// Writes trajectory_tum.txt (poses of the base), trajectory_kitti.txt (of the left camera), frames.csv and
-/// summary.json into a folder that exists. @throws Error
+/// summary.json into a folder that exists. The trajectories begin where a pose is known. @throws Error
 void writeLocalization(const std::filesystem::path& folder, const DriveLocalization& run,
                        const LocalizationSummary& summary, const Eigen::Isometry3d& T_base_lidar,
                        const Eigen::Isometry3d& T_camera_lidar);

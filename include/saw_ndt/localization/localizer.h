@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saw_ndt/common/export.h"
+#include "saw_ndt/localization/global_search.h"
 #include "saw_ndt/localization/localization_method.h"
 #include "saw_ndt/localization/motion_prediction.h"
 #include "saw_ndt/localization/pose_judge.h"
@@ -25,6 +26,8 @@ struct SAW_NDT_EXPORT LocalizerOptions {
   MotionPredictionOptions prediction;
   AlignmentOptions alignment;  ///< what LocalizationMethod has as well is the method's
   AcceptanceOptions acceptance;
+  bool search = true;                 ///< look for a pose that has been lost, and at the start around the initial one
+  GlobalSearchOptions global_search;  ///< how
   /// Go on where the labels of the map were made by other segmentation options, such as those of another sensor.
   bool allow_other_segmentation = false;
 
@@ -36,9 +39,19 @@ struct SAW_NDT_EXPORT LocalizerOptions {
 struct StageTimes {
   double segment_ms = 0.0;  ///< labels of the scan
   double filter_ms = 0.0;   ///< ground subsampling, base frame, source voxels
-  double align_ms = 0.0;    ///< registration
+  double align_ms = 0.0;    ///< search and registration
   double total_ms = 0.0;    ///< from the scan in memory to the pose, likelihoods and acceptance included
 };
+
+/// Where a pose was looked for, beside the prediction.
+enum class SearchExtent {
+  NONE,
+  AROUND,      ///< as far from the prediction as that is uncertain
+  EVERYWHERE,  ///< in all of the map
+};
+
+/// "", "around", "everywhere"
+SAW_NDT_EXPORT const char* toString(SearchExtent extent);
 
 struct LocalizationResult {
   double stamp_s = 0.0;
@@ -54,6 +67,7 @@ struct LocalizationResult {
   /// Along which the scan does not hold the pose, as AlignmentResult::free_directions; none where it was rejected.
   PoseDirections free_directions = PoseDirections(6, 0);
   PoseCorrection correction;  ///< of the prediction by registration
+  SearchExtent search = SearchExtent::NONE;
   std::size_t source_points = 0;
   StageTimes times;
   TrackState track;  ///< after this scan
@@ -67,8 +81,9 @@ using SourceAligner =
 
 /// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. It prepares the scan (ScanPreparation),
 /// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). A scan that is rejected is tried
-/// again from the last pose; one in doubt is compared with rival poses around. Scratch memory is kept from scan
-/// to scan, but for scans in doubt. One object for each vehicle, not to be shared by threads; the map may be.
+/// again from the last pose, then from where a GlobalSearch finds it around the prediction and, once the vehicle is
+/// lost, everywhere; one in doubt is compared with rival poses. Scratch memory is kept from scan to scan, but for scans
+/// in doubt. One object for each vehicle, not to be shared by threads; the map may be.
 class SAW_NDT_EXPORT Localizer {
  public:
   /// Makes its own target of a map.
@@ -88,6 +103,9 @@ class SAW_NDT_EXPORT Localizer {
   /// Where the vehicle is at the first scan, or after it was lost.
   /// @throws std::invalid_argument unless it is a finite rigid transform
   void setInitialPose(const Eigen::Isometry3d& T_map_base) { prediction_.reset(T_map_base); }
+  /// Nobody knows where the vehicle is at the first scan: it is looked for everywhere.
+  /// @throws std::logic_error where the localizer has no target of this library, or options().search is false
+  void setUnknownPose();
 
   /// @param scan     in the LiDAR frame
   /// @param stamp_s  time of the scan; stamps should grow
@@ -103,16 +121,21 @@ class SAW_NDT_EXPORT Localizer {
   ScanPreparation preparation_;
   MotionPrediction prediction_;
   struct Attempt;
+  struct Search;
   Attempt attempt(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
                   const PoseExpectation& expectation);
   std::vector<Eigen::Isometry3d> rivalsOf(const SourcePoints& source, const Attempt& found,
                                           const PoseExpectation& expectation);
-  Attempt withoutRivals(const SourcePoints& source, const Attempt& found, const PoseExpectation& expectation);
+  Attempt withoutRivals(const SourcePoints& source, const Attempt& found, const Search& search,
+                        const PoseExpectation& expectation);
   void confirmFreeDirections(const SourcePoints& source, AlignmentResult& alignment);
-  Attempt find(const SourcePoints& source, const PoseExpectation& expectation);
+  Attempt fromPrediction(const SourcePoints& source, const PoseExpectation& expectation);
+  Attempt fromSearch(const SourcePoints& source, const PoseExpectation& expectation, Search& search);
+  Attempt find(const SourcePoints& source, PoseExpectation& expectation, Search& search);
 
   SourceAligner aligner_;
   std::optional<NdtTarget> target_;  // where it is this library's aligner
+  std::optional<GlobalSearch> global_search_;
   PoseJudge judge_;
 };
 

@@ -44,6 +44,11 @@ class SAW_NDT_EXPORT MotionPrediction {
   /// Forgets all poses and starts from one whose stamp is not known.
   /// @throws std::invalid_argument unless it is a finite rigid transform
   void reset(const Eigen::Isometry3d& T_map_base);
+  /// Forgets all poses: the vehicle is lost, and may be anywhere.
+  void resetUnknown();
+  /// Goes on from a pose that was found without regard to the motion before, as after a kidnapping: nothing is known of
+  /// the velocity. Returns its covariance. @throws std::invalid_argument for what is not finite
+  Matrix6d restart(const MeasuredPose& pose, double stamp_s);
   /// Adds an accepted pose and returns its covariance, as TrackState::covariance. A scan whose stamp (s) is not after
   /// the last comes late and adds nothing, unless it is more than a second before it, where it could not have been
   /// then, or the third in a row: then the clock was set back.
@@ -93,6 +98,9 @@ SAW_NDT_EXPORT Eigen::Isometry3d keptAlongFreeDirections(const Eigen::Isometry3d
 
 /// The error of a pose by (translation, rotation), in the axes of the map: it turns and moves `from` to `to`.
 SAW_NDT_EXPORT Vector6d poseDifference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+
+/// That of a pose of which nothing is known: standard deviations of 100 km and of half a turn.
+SAW_NDT_EXPORT Matrix6d anywhereCovariance();
 
 /// Whether chance makes an error of that covariance so large less than once in a thousand times (a squared Mahalanobis
 /// distance of 22.5).

@@ -86,6 +86,9 @@ class SAW_NDT_EXPORT PoseJudge {
   PoseExpectation expect(const Eigen::Isometry3d& T_map_base_predicted, const Matrix6d& covariance,
                          const TrackState& track, double stamp_s, double max_turn_rate_radps) const;
 
+  /// Where nothing is known of the pose but that it was found somewhere in the map.
+  PoseExpectation expectAnywhere(const Eigen::Isometry3d& T_map_base) const;
+
   /// @param alignment   with likelihoods
   /// @param T_map_base  the pose that would be published
   Acceptance judge(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,

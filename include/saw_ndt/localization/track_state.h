@@ -22,6 +22,7 @@ SAW_NDT_EXPORT const char* toString(TrackStatus status);
 /// What a localizer knows of the vehicle between two scans.
 struct TrackState {
   TrackStatus status = TrackStatus::NOT_INITIALIZED;
+  bool pose_known = false;  ///< false: the vehicle may be anywhere, and T_map_base says nothing
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();  ///< the last accepted pose, or the initial one
   Matrix6d covariance = Matrix6d::Zero();  ///< of that pose, as AlignmentResult::covariance about the base's origin
   std::optional<double> stamp_s;           ///< of that pose; of an initial pose, that of the first scan
