@@ -288,7 +288,9 @@ Localizer::Attempt Localizer::withoutRivals(const SourcePoints& source, const At
     best.T_map_base =
         keptAlongFreeDirections(expectation.T_map_base, best.alignment.T_map_source, best.alignment.free_directions);
     best.acceptance = judge_.judge(best.alignment, best.T_map_base, expectation);
-    if (comparison.advantage(of_best, comparison.fitsAt(best.T_map_base)) < min_advantage_sigmas) return best;
+    if (best.accepted() && comparison.advantage(of_best, comparison.fitsAt(best.T_map_base)) < min_advantage_sigmas) {
+      return best;
+    }
   }
   best.acceptance = Acceptance::AMBIGUOUS;
   return best;
