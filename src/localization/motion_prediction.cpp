@@ -46,6 +46,9 @@ constexpr double kUnlikelySquaredMahalanobis = 22.5;
 // Standard deviation of a position that nobody knows (m).
 constexpr double kAnywhere_m = 1.0e5;
 
+// The squared Mahalanobis distance of three numbers that one error in a thousand exceeds.
+constexpr double kOutlierSquaredMahalanobis = 16.3;
+
 // Adding up the recent past of the overlap.
 constexpr double kNewOverlapShare = 0.1;
 
@@ -58,6 +61,34 @@ Matrix6d diagonal(double translation, double rotation) {
   Vector6d values;
   values << Eigen::Vector3d::Constant(translation * translation), Eigen::Vector3d::Constant(rotation * rotation);
   return values.asDiagonal();
+}
+
+void requireFinite(const MeasuredPosition& position) {
+  checkOption(position.position_m.allFinite() && position.covariance.allFinite(), "position",
+              position.position_m.transpose(), "finite, as its covariance");
+}
+
+// Whether a position is no outlier, and how far it is from one that is known with a covariance; the sum of both.
+bool innovationOf(const MeasuredPosition& measured, const Eigen::Vector3d& position_m,
+                  const Eigen::Matrix3d& covariance, Eigen::Vector3d& innovation,
+                  Eigen::Matrix3d& innovation_covariance) {
+  innovation = measured.position_m - position_m;
+  innovation_covariance = covariance + measured.covariance;
+  return innovation.dot(innovation_covariance.ldlt().solve(innovation)) <= kOutlierSquaredMahalanobis;
+}
+
+// A covariance by (translation, rotation) in the axes of another frame.
+Matrix6d turned(const Matrix6d& covariance, const Eigen::Matrix3d& R) {
+  Matrix6d both = Matrix6d::Zero();
+  both.topLeftCorner<3, 3>() = R;
+  both.bottomRightCorner<3, 3>() = R;
+  return both * covariance * both.transpose();
+}
+
+void moveBy(const Vector6d& difference, Eigen::Isometry3d& T) {
+  T.translation() += difference.head<3>();
+  T.linear() = rotationFromVector(difference.tail<3>()) * T.linear();
+  T = normalizedRotation(T);
 }
 
 }  // namespace
@@ -80,6 +111,23 @@ Vector6d poseDifference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& 
   Vector6d difference;
   difference << to.translation() - from.translation(), rotationVector(to.linear() * from.linear().transpose());
   return difference;
+}
+
+std::optional<UncertainPose> correctedBy(const MeasuredPosition& position, const UncertainPose& pose) {
+  requireFinite(position);
+  Eigen::Vector3d innovation;
+  Eigen::Matrix3d S;
+  if (!innovationOf(position, pose.T_map_base.translation(), pose.covariance.topLeftCorner<3, 3>(), innovation, S)) {
+    return std::nullopt;
+  }
+  const Eigen::Matrix<double, 6, 3> gain = pose.covariance.leftCols<3>() * S.inverse();
+  UncertainPose corrected = pose;
+  moveBy(gain * innovation, corrected.T_map_base);
+  Matrix6d remaining = Matrix6d::Identity();
+  remaining.leftCols<3>() -= gain;
+  corrected.covariance =
+      remaining * pose.covariance * remaining.transpose() + gain * position.covariance * gain.transpose();
+  return corrected;
 }
 
 Matrix6d anywhereCovariance() { return diagonal(kAnywhere_m, kPi); }
@@ -128,6 +176,8 @@ void MotionPrediction::reset(const Eigen::Isometry3d& T_map_base) {
   covariance_.block<6, 6>(0, 0) = state_.covariance;
   covariance_.block<6, 6>(6, 6) = diagonal(options_.unknown_speed_sigma_mps, kUnknownTurnRate_radps);
   covariance_.block<6, 6>(12, 12) = diagonal(options_.acceleration_sigma_mps2, options_.turn_acceleration_sigma_radps2);
+  motion_.reset();
+  motion_complete_ = true;
 }
 
 void MotionPrediction::resetUnknown() {
@@ -146,6 +196,46 @@ Matrix6d MotionPrediction::restart(const MeasuredPose& pose, double stamp_s) {
   state_.covariance = pose.covariance;
   covariance_.block<6, 6>(0, 0) = pose.covariance;
   state_.stamp_s = stamp_s;
+  return state_.covariance;
+}
+
+void MotionPrediction::move(const std::optional<MeasuredMotion>& motion) {
+  if (!state_.stamp_s) return;  // the initial pose is that of this scan
+  motion_complete_ = motion_complete_ && motion.has_value();
+  if (!motion_complete_) {
+    motion_.reset();
+    return;
+  }
+  requireRigid(motion->T_before_now, "T_before_now");
+  checkOption(motion->covariance.allFinite(), "motion.covariance", motion->covariance.trace(), "finite");
+  if (!motion_) motion_ = MeasuredMotion();
+  const Eigen::Matrix3d R_last_before = motion_->T_before_now.linear();
+  Matrix6d F = Matrix6d::Identity();
+  F.topRightCorner<3, 3>() -= skewSymmetric(R_last_before * motion->T_before_now.translation());
+  motion_->covariance = F * motion_->covariance * F.transpose() + turned(motion->covariance, R_last_before);
+  motion_->T_before_now = normalizedRotation(motion_->T_before_now * motion->T_before_now);
+}
+
+Matrix6d MotionPrediction::correct(const MeasuredPosition& position) {
+  requireFinite(position);
+  Eigen::Vector3d innovation;
+  Eigen::Matrix3d S;
+  if (!innovationOf(position, state_.T_map_base.translation(), covariance_.topLeftCorner<3, 3>(), innovation, S)) {
+    return state_.covariance;
+  }
+  Eigen::Matrix<double, 18, 3> gain = covariance_.leftCols<3>() * S.inverse();
+  gain.bottomRows<6>().setZero();  // accelerations are reckoned with, not estimated
+  const Eigen::Matrix<double, 18, 1> correction = gain * innovation;
+  moveBy(correction.head<6>(), state_.T_map_base);
+  const Eigen::Matrix3d R_base_map = state_.T_map_base.linear().transpose();
+  state_.velocity_base_mps =
+      bounded(state_.velocity_base_mps + R_base_map * correction.segment<3>(6), options_.max_speed_mps);
+  state_.turn_rate_base_radps =
+      bounded(state_.turn_rate_base_radps + R_base_map * correction.segment<3>(9), options_.max_turn_rate_radps);
+  Covariance remaining = Covariance::Identity();
+  remaining.leftCols<3>() -= gain;
+  covariance_ = remaining * covariance_ * remaining.transpose() + gain * position.covariance * gain.transpose();
+  state_.covariance = covariance_.topLeftCorner<6, 6>();
   return state_.covariance;
 }
 
@@ -200,7 +290,14 @@ MotionPrediction::Covariance MotionPrediction::propagated(const Interval& interv
     result.block<6, 6>(6, 6) = diagonal(options_.unknown_speed_sigma_mps, kUnknownTurnRate_radps);
     velocity.setZero();
   }
-  if (interval.sigma_s > 0.0) {
+  if (motion_) {
+    Matrix6d F_pose = Matrix6d::Identity();
+    F_pose.topRightCorner<3, 3>() -= skewSymmetric(R * motion_->T_before_now.translation());
+    result.topLeftCorner<6, 6>() =
+        F_pose * covariance_.topLeftCorner<6, 6>() * F_pose.transpose() + turned(motion_->covariance, R);
+    result.topRightCorner<6, 12>().setZero();
+    result.bottomLeftCorner<12, 6>().setZero();
+  } else if (interval.sigma_s > 0.0) {
     result.topLeftCorner<6, 6>() +=
         interval.sigma_s * interval.sigma_s * (velocity * velocity.transpose() + result.block<6, 6>(6, 6));
   }
@@ -242,6 +339,8 @@ Matrix6d MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
     gain.middleRows<6>(6) = learnVelocity(pose, stamp_s, predicted) * held;
   }
   covariance_ = updated();
+  motion_.reset();
+  motion_complete_ = true;
   state_.T_map_base = pose.T_map_base;
   state_.covariance = covariance_.topLeftCorner<6, 6>();
   state_.stamp_s = stamp_s;
@@ -311,6 +410,7 @@ Eigen::Isometry3d MotionPrediction::predict(double stamp_s) const {
   if (state_.status == TrackStatus::NOT_INITIALIZED) {
     throw std::logic_error("no initial pose: setInitialPose() has not been called");
   }
+  if (motion_) return normalizedRotation(state_.T_map_base * motion_->T_before_now);
   const double duration_s = intervalTo(stamp_s).duration_s;
   if (!state_.velocity_known || duration_s == 0.0) return state_.T_map_base;
   Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();

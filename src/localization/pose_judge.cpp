@@ -63,6 +63,7 @@ void AcceptanceOptions::check() const {
   checkOption(min_likelihood >= 0.0, "min_likelihood", min_likelihood, "0 or more");
   checkOption(isShare(min_overlap), "min_overlap", min_overlap, "between 0 and 1");
   checkOption(isShare(min_overlap_in_doubt), "min_overlap_in_doubt", min_overlap_in_doubt, "between 0 and 1");
+  checkOption(isShare(min_overlap_anywhere), "min_overlap_anywhere", min_overlap_anywhere, "between 0 and 1");
   checkOption(isShare(min_usual_overlap_share), "min_usual_overlap_share", min_usual_overlap_share, "between 0 and 1");
   checkOption(min_advantage_sigmas >= 0.0, "min_advantage_sigmas", min_advantage_sigmas, "0 or more");
   checkOption(max_correction_m > 0.0, "max_correction_m", max_correction_m, "positive");
@@ -135,6 +136,7 @@ PoseExpectation PoseJudge::expectAnywhere(const Eigen::Isometry3d& T_map_base) c
   expectation.search_radius_m = kSigmas * kFreeSigma_m;
   expectation.unsure = true;
   expectation.vague = true;
+  expectation.anywhere = true;
   return expectation;
 }
 
@@ -183,7 +185,8 @@ Acceptance PoseJudge::judgeDoubtful(const AlignmentResult& alignment, const Eige
   }
   const bool unexpected = expectation.vague || isSurprising(alignment, T_map_base, expectation);
   const double usual_share = std::min(options_.min_usual_overlap_share, unexpected ? 1.0 : kMuchLessThanUsual);
-  const double least = std::max(unexpected ? options_.min_overlap_in_doubt : options_.min_overlap,
+  const double least_in_doubt = unexpected ? options_.min_overlap_in_doubt : options_.min_overlap;
+  const double least = std::max(expectation.anywhere ? options_.min_overlap_anywhere : least_in_doubt,
                                 usual_share * track.usual_overlap.value_or(0.0));
   return alignment.overlap < least ? Acceptance::LOW_OVERLAP : Acceptance::ACCEPTED;
 }

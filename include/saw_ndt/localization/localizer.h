@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,11 @@
 #include "saw_ndt/registration/ndt_aligner.h"
 
 namespace saw_ndt {
+
+namespace internal {
+class PoseFinder;
+struct PoseAttempt;
+}  // namespace internal
 
 struct SAW_NDT_EXPORT LocalizerOptions {
   LocalizationMethod method = LocalizationMethod::named("weighted");
@@ -75,15 +81,23 @@ struct LocalizationResult {
   bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
 };
 
+/// What other sensors measured of a scan's pose, as far as there are any.
+struct ScanPriors {
+  std::optional<MeasuredMotion> motion;  ///< since the scan before that was given to localize(), accepted or not
+  std::optional<MeasuredPosition> position;
+};
+
 /// Registers a source, in the base's frame, from a predicted pose; fills AlignmentResult::likelihoods.
 using SourceAligner =
     std::function<AlignmentResult(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted)>;
 
 /// Follows a vehicle through a map, one call a scan: Algorithm 1 of the paper. It prepares the scan (ScanPreparation),
-/// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). A scan that is rejected is tried
-/// again from the last pose, then from where a GlobalSearch finds it around the prediction and, once the vehicle is
-/// lost, everywhere; one in doubt is compared with rival poses. Scratch memory is kept from scan to scan, but for scans
-/// in doubt. One object for each vehicle, not to be shared by threads; the map may be.
+/// predicts its pose (MotionPrediction), aligns it and judges the result (PoseJudge). Odometry, where it is given,
+/// takes the place of a constant velocity; a measured position pulls on the pose by its covariance, which moves what
+/// the scan holds by next to nothing, and tells where to search. A scan that is rejected is tried again from the last
+/// pose, then from where a GlobalSearch finds it around the prediction and, once the vehicle is lost, everywhere; one
+/// in doubt is compared with rival poses. Scratch memory is kept from scan to scan, but for scans in doubt. One object
+/// for each vehicle, not to be shared by threads; the map may be.
 class SAW_NDT_EXPORT Localizer {
  public:
   /// Makes its own target of a map.
@@ -99,6 +113,9 @@ class SAW_NDT_EXPORT Localizer {
   /// With an aligner of one's own.
   /// @throws std::invalid_argument where an option does not hold
   Localizer(SourceAligner aligner, const LocalizerOptions& options);
+  ~Localizer();
+  Localizer(Localizer&& other) noexcept;
+  Localizer& operator=(Localizer&& other) noexcept;
 
   /// Where the vehicle is at the first scan, or after it was lost.
   /// @throws std::invalid_argument unless it is a finite rigid transform
@@ -109,8 +126,10 @@ class SAW_NDT_EXPORT Localizer {
 
   /// @param scan     in the LiDAR frame
   /// @param stamp_s  time of the scan; stamps should grow
-  /// @throws std::logic_error before setInitialPose(), std::invalid_argument where the stamp is not finite
-  LocalizationResult localize(const ScanView& scan, double stamp_s);
+  /// @throws std::logic_error before setInitialPose() or setUnknownPose(), std::invalid_argument where the stamp or a
+  ///         prior is not finite
+  /// @param priors   what other sensors say of the pose of this scan
+  LocalizationResult localize(const ScanView& scan, double stamp_s, const ScanPriors& priors = {});
 
   const LocalizerOptions& options() const { return options_; }
   /// What is known of the vehicle after the last scan.
@@ -120,23 +139,12 @@ class SAW_NDT_EXPORT Localizer {
   LocalizerOptions options_;
   ScanPreparation preparation_;
   MotionPrediction prediction_;
-  struct Attempt;
-  struct Search;
-  Attempt attempt(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
-                  const PoseExpectation& expectation);
-  std::vector<Eigen::Isometry3d> rivalsOf(const SourcePoints& source, const Attempt& found,
-                                          const PoseExpectation& expectation);
-  Attempt withoutRivals(const SourcePoints& source, const Attempt& found, const Search& search,
-                        const PoseExpectation& expectation);
-  void confirmFreeDirections(const SourcePoints& source, AlignmentResult& alignment);
-  Attempt fromPrediction(const SourcePoints& source, const PoseExpectation& expectation);
-  Attempt fromSearch(const SourcePoints& source, const PoseExpectation& expectation, Search& search);
-  Attempt find(const SourcePoints& source, PoseExpectation& expectation, Search& search);
+  UncertainPose predictedPose(double stamp_s, const std::optional<MeasuredPosition>& position,
+                              bool& without_track) const;
+  UncertainPose accept(const internal::PoseAttempt& found, double stamp_s,
+                       const std::optional<MeasuredPosition>& position, bool without_track);
 
-  SourceAligner aligner_;
-  std::optional<NdtTarget> target_;  // where it is this library's aligner
-  std::optional<GlobalSearch> global_search_;
-  PoseJudge judge_;
+  std::unique_ptr<internal::PoseFinder> finder_;
 };
 
 }  // namespace saw_ndt

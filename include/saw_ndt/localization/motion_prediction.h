@@ -31,6 +31,24 @@ struct MeasuredPose {
   std::optional<double> overlap = {};                     ///< AlignmentResult::overlap, where it is known
 };
 
+/// The motion of the base from one scan to the next, as odometry measures it.
+struct MeasuredMotion {
+  Eigen::Isometry3d T_before_now = Eigen::Isometry3d::Identity();  ///< pose of the base in the base's frame before
+  Matrix6d covariance = Matrix6d::Zero();  ///< by (translation, rotation) in the axes of the base before
+};
+
+/// A position of the base, as GNSS measures it.
+struct MeasuredPosition {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the map
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m^2
+};
+
+/// A pose and how sure it is.
+struct UncertainPose {
+  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< as AlignmentResult::covariance
+};
+
 /// Follows the track of a vehicle: predicts its next pose from the last two accepted ones and their stamps (Section
 /// III.C of the paper), by constant velocity and turn rate in the vehicle's own frame, a circle where it turns, both
 /// bounded. Before there are two, the last pose. Beside the pose it carries the covariance of pose and velocity, that
@@ -58,6 +76,13 @@ class SAW_NDT_EXPORT MotionPrediction {
   Matrix6d accept(const Eigen::Isometry3d& T_map_base, double stamp_s) {
     return accept(MeasuredPose{T_map_base}, stamp_s);
   }
+  /// The motion since the scan before, accepted or not. Call it for each scan, before what is asked or told of it;
+  /// nothing where it was not measured. As long as it is known from the last pose on, predictions follow it instead of
+  /// a constant velocity, and stamps do not matter.
+  void move(const std::optional<MeasuredMotion>& motion);
+  /// Corrects the last accepted pose, and the velocity, by a position measured then, as far as that is surer. What does
+  /// not fit what is known is passed over as an outlier. Returns the covariance of the pose.
+  Matrix6d correct(const MeasuredPosition& position);
   /// A scan was rejected: nothing new is known. An initial pose is that of the first scan, rejected or not.
   void reject(double stamp_s);
 
@@ -85,6 +110,8 @@ class SAW_NDT_EXPORT MotionPrediction {
   Matrix6d learnVelocity(const MeasuredPose& pose, double stamp_s, const Covariance& predicted);
 
   MotionPredictionOptions options_;
+  std::optional<MeasuredMotion> motion_;  // since the last pose
+  bool motion_complete_ = true;           // no scan since then was without
   TrackState state_;
   Covariance covariance_ = Covariance::Zero();
   int late_scans_ = 0;  // one after the other
@@ -98,6 +125,10 @@ SAW_NDT_EXPORT Eigen::Isometry3d keptAlongFreeDirections(const Eigen::Isometry3d
 
 /// The error of a pose by (translation, rotation), in the axes of the map: it turns and moves `from` to `to`.
 SAW_NDT_EXPORT Vector6d poseDifference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
+
+/// A pose corrected by a position that was measured of it (Kalman filter); nothing where the position is an outlier:
+/// farther away than both allow but once in a thousand times.
+SAW_NDT_EXPORT std::optional<UncertainPose> correctedBy(const MeasuredPosition& position, const UncertainPose& pose);
 
 /// That of a pose of which nothing is known: standard deviations of 100 km and of half a turn.
 SAW_NDT_EXPORT Matrix6d anywhereCovariance();

@@ -16,6 +16,9 @@ struct SAW_NDT_EXPORT AcceptanceOptions {
   /// The same of a pose in doubt (PoseJudge::isDoubtful()): right ones have 0.6 and more where the map is true, wrong
   /// ones 0.5 and less, but along a road.
   double min_overlap_in_doubt = 0.45;
+  /// The same of a pose that was found somewhere in the map, without regard to a prediction: right ones have 0.72 and
+  /// more, wrong ones 0.58 and less.
+  double min_overlap_anywhere = 0.65;
   /// Least share of the usual overlap of this drive of a pose that is vaguely expected or surprising; of others in
   /// doubt this or 0.7, whichever is less.
   double min_usual_overlap_share = 0.8;
@@ -73,6 +76,7 @@ struct PoseExpectation {
   bool unsure = false;           ///< by more than 0.3 m: a pose next to the right one may pass for it
   bool vague = false;            ///< nothing much is expected: there is no pose before, or the prediction is unsure
   bool any_heading = false;      ///< the vehicle may look the other way
+  bool anywhere = false;         ///< nothing at all is expected
 };
 
 /// Judges the result of an alignment.

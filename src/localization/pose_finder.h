@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "saw_ndt/localization/global_search.h"
+#include "saw_ndt/localization/localizer.h"
+#include "saw_ndt/localization/pose_judge.h"
+#include "saw_ndt/map/ndt_target.h"
+
+namespace saw_ndt::internal {
+
+/// An alignment, and what is thought of it.
+struct PoseAttempt {
+  AlignmentResult alignment;
+  Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();  ///< along free directions the expected pose
+  Acceptance acceptance = Acceptance::NOT_CONVERGED;
+  SearchExtent search = SearchExtent::NONE;  ///< EVERYWHERE: without regard to what was expected
+
+  bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
+};
+
+/// Finds the pose of a scan: from the prediction, from the last pose, from where a search finds the scan around the
+/// prediction and, where the vehicle is lost, everywhere. A pose in doubt is compared with others.
+class PoseFinder {
+ public:
+  /// Finds without a target: nothing but the aligner tells of poses.
+  PoseFinder(SourceAligner aligner, const LocalizerOptions& options);
+  /// @param target  that of the aligner
+  PoseFinder(SourceAligner aligner, const NdtTarget& target, const LocalizerOptions& options);
+
+  bool canSearch() const { return search_.has_value(); }
+  PoseAttempt find(const SourcePoints& source, const PoseExpectation& expectation, const TrackState& track);
+
+  const PoseJudge& judge() const { return judge_; }
+
+ private:
+  PoseAttempt attempt(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
+                      const PoseExpectation& expectation);
+  void confirmFreeDirections(const SourcePoints& source, AlignmentResult& alignment);
+  std::vector<Eigen::Isometry3d> rivalsOf(const SourcePoints& source, const PoseAttempt& found,
+                                          const PoseExpectation& expectation, const TrackState& track);
+  PoseAttempt withoutRivals(const SourcePoints& source, const PoseAttempt& found,
+                            const std::vector<Eigen::Isometry3d>& other_starts, const PoseExpectation& expectation,
+                            const TrackState& track);
+  // A pose that judge() accepts, compared with rivals and with what is found from other starts where it is in doubt.
+  PoseAttempt settled(const SourcePoints& source, const PoseAttempt& found,
+                      const std::vector<Eigen::Isometry3d>& other_starts, const PoseExpectation& expectation,
+                      const TrackState& track);
+  PoseAttempt fromPrediction(const SourcePoints& source, const PoseExpectation& expectation, const TrackState& track);
+  // The best candidates of a search; nothing as region: everywhere.
+  std::vector<Eigen::Isometry3d> searchedStarts(const SourcePoints& source,
+                                                const std::optional<SearchRegion>& region) const;
+  // The first that is accepted; null as expectation: the vehicle may be anywhere.
+  PoseAttempt fromStarts(const SourcePoints& source, const std::vector<Eigen::Isometry3d>& starts,
+                         const PoseExpectation* expectation, const TrackState& track);
+
+  SourceAligner aligner_;
+  std::optional<NdtTarget> target_;
+  std::optional<GlobalSearch> search_;
+  PoseJudge judge_;
+  double min_advantage_sigmas_;
+  int threads_;
+};
+
+}  // namespace saw_ndt::internal
