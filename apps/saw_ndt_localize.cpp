@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "app_options.h"
+#include "drives/prior_sources.h"
 #include "output_folder.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
@@ -47,6 +48,9 @@ int main(int argc, char** argv) {
   double initial_radius_m = kSigmas * options.prediction.initial_sigma_m;
   double initial_yaw_range_deg = kSigmas * options.prediction.initial_sigma_deg;
   bool no_search = false;
+  std::string odometry_file, gnss_file;
+  saw_ndt::OdometryDrift drift;
+  double gnss_sigma_m = 2.0;
   saw_ndt::SegmentationArguments segmentation;
   std::string method = options.method.name;
   saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
@@ -65,6 +69,15 @@ int main(int argc, char** argv) {
   app.addOption("initial-radius", &initial_radius_m, "METRES", "how far from there the base may be");
   app.addOption("initial-yaw-range", &initial_yaw_range_deg, "DEGREES",
                 "how much its heading may differ from that, 180 for any");
+  app.addOption("odometry", &odometry_file, "FILE",
+                "poses of the base by odometry, in a frame of any origin: TUM format, or CSV with the columns stamp_s, "
+                "x_m, y_m, z_m, qx, qy, qz, qw, sigma_m, sigma_deg (of the motion since the line before)");
+  app.addOption("odometry-drift", &drift.share, "SHARE", "of the way, one sigma, for odometry in TUM format");
+  app.addOption("odometry-drift-deg", &drift.deg_per_s, "DEGREES", "in a second, one sigma, likewise");
+  app.addOption("gnss", &gnss_file, "FILE",
+                "positions of the base in the map: TUM format, or CSV with the columns stamp_s, x_m, y_m, z_m and, "
+                "where they are known, sigma_x_m, sigma_y_m, sigma_z_m");
+  app.addOption("gnss-sigma", &gnss_sigma_m, "METRES", "of a position whose file does not say");
   app.addFlag("no-search", &no_search, "do not look for a pose that is lost, but align from predictions alone");
   app.addOption("base-lidar", &base_lidar, saw_ndt::kPosePlaceholder,
                 "pose of the LiDAR on the vehicle's base, metres and degrees; all zero: the base is the LiDAR");
@@ -96,6 +109,9 @@ int main(int argc, char** argv) {
       saw_ndt::checkOption(initial_radius_m > 0.0, "initial-radius", initial_radius_m, "positive");
       saw_ndt::checkOption(initial_yaw_range_deg > 0.0 && initial_yaw_range_deg <= 180.0, "initial-yaw-range",
                            initial_yaw_range_deg, "positive and at most 180");
+      saw_ndt::checkOption(gnss_sigma_m > 0.0, "gnss-sigma", gnss_sigma_m, "positive");
+      saw_ndt::checkOption(drift.share >= 0.0, "odometry-drift", drift.share, "0 or more");
+      saw_ndt::checkOption(drift.deg_per_s >= 0.0, "odometry-drift-deg", drift.deg_per_s, "0 or more");
       options.check();
     });
     if (no_search && initial_pose == kUnknown) {
@@ -124,7 +140,9 @@ int main(int argc, char** argv) {
 
     saw_ndt::OutputFolder folder(out_dir);
     saw_ndt::ProgressBar progress(selected.size());
-    const std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
+    std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
+    if (!odometry_file.empty()) source = saw_ndt::withOdometry(std::move(source), odometry_file, drift);
+    if (!gnss_file.empty()) source = saw_ndt::withPositions(std::move(source), gnss_file, gnss_sigma_m);
     bool was_lost = false;
     std::size_t done = 0;
     const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *source, [&] {

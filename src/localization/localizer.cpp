@@ -114,6 +114,13 @@ void Localizer::setUnknownPose() {
   prediction_.resetUnknown();
 }
 
+PoseAttempt Localizer::find(const SourcePoints& source, const UncertainPose& predicted, double stamp_s) {
+  const TrackState& track = prediction_.state();
+  const PoseExpectation expectation = finder_->judge().expect(predicted.T_map_base, predicted.covariance, track,
+                                                              stamp_s, options_.prediction.max_turn_rate_radps);
+  return finder_->find(source, expectation, track);
+}
+
 // The prediction with a measured position. Where the vehicle is lost, that alone may be right.
 UncertainPose Localizer::predictedPose(double stamp_s, const std::optional<MeasuredPosition>& position,
                                        bool& without_track) const {
@@ -154,16 +161,19 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
   bool without_track = !prediction_.state().pose_known;
   const UncertainPose predicted = predictedPose(stamp_s, priors.position, without_track);
   result.T_map_base_predicted = predicted.T_map_base;
-  const PoseExpectation expectation =
-      finder_->judge().expect(predicted.T_map_base, predicted.covariance, prediction_.state(), stamp_s,
-                              options_.prediction.max_turn_rate_radps);
   const SourcePoints& source = preparation_.prepare(scan);
   result.source_points = source.size();
   result.times.segment_ms = preparation_.segmentMilliseconds();
   result.times.filter_ms = preparation_.filterMilliseconds();
 
   const internal::Stopwatch alignment;
-  const PoseAttempt found = finder_->find(source, expectation, prediction_.state());
+  PoseAttempt found = find(source, predicted, stamp_s);
+  if (!found.accepted() && priors.position && !without_track) {
+    // The position may be an outlier that nobody could tell.
+    const PoseAttempt other =
+        find(source, {prediction_.predict(stamp_s), prediction_.predictedCovariance(stamp_s)}, stamp_s);
+    if (other.accepted()) found = other;
+  }
   result.times.align_ms = alignment.milliseconds();
 
   result.alignment = found.alignment;

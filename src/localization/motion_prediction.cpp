@@ -6,11 +6,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "localization/uncertain_pose.h"
 #include "registration/pose_lengths.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
+
+using namespace internal;
+
 namespace {
 
 // Stamps that differ by less are of one moment (s).
@@ -40,55 +44,12 @@ constexpr double kUnknownTurnRate_radps = 0.5;
 // A pose that is surer than this tells velocities (m).
 constexpr double kSureSigma_m = 0.1;
 
-// The squared Mahalanobis distance of six numbers that one error in a thousand exceeds.
-constexpr double kUnlikelySquaredMahalanobis = 22.5;
-
-// Standard deviation of a position that nobody knows (m).
-constexpr double kAnywhere_m = 1.0e5;
-
-// The squared Mahalanobis distance of three numbers that one error in a thousand exceeds.
-constexpr double kOutlierSquaredMahalanobis = 16.3;
-
 // Adding up the recent past of the overlap.
 constexpr double kNewOverlapShare = 0.1;
 
 Eigen::Vector3d bounded(const Eigen::Vector3d& vector, double limit) {
   const double length = vector.norm();
   return length > limit ? Eigen::Vector3d(vector * (limit / length)) : vector;
-}
-
-Matrix6d diagonal(double translation, double rotation) {
-  Vector6d values;
-  values << Eigen::Vector3d::Constant(translation * translation), Eigen::Vector3d::Constant(rotation * rotation);
-  return values.asDiagonal();
-}
-
-void requireFinite(const MeasuredPosition& position) {
-  checkOption(position.position_m.allFinite() && position.covariance.allFinite(), "position",
-              position.position_m.transpose(), "finite, as its covariance");
-}
-
-// Whether a position is no outlier, and how far it is from one that is known with a covariance; the sum of both.
-bool innovationOf(const MeasuredPosition& measured, const Eigen::Vector3d& position_m,
-                  const Eigen::Matrix3d& covariance, Eigen::Vector3d& innovation,
-                  Eigen::Matrix3d& innovation_covariance) {
-  innovation = measured.position_m - position_m;
-  innovation_covariance = covariance + measured.covariance;
-  return innovation.dot(innovation_covariance.ldlt().solve(innovation)) <= kOutlierSquaredMahalanobis;
-}
-
-// A covariance by (translation, rotation) in the axes of another frame.
-Matrix6d turned(const Matrix6d& covariance, const Eigen::Matrix3d& R) {
-  Matrix6d both = Matrix6d::Zero();
-  both.topLeftCorner<3, 3>() = R;
-  both.bottomRightCorner<3, 3>() = R;
-  return both * covariance * both.transpose();
-}
-
-void moveBy(const Vector6d& difference, Eigen::Isometry3d& T) {
-  T.translation() += difference.head<3>();
-  T.linear() = rotationFromVector(difference.tail<3>()) * T.linear();
-  T = normalizedRotation(T);
 }
 
 }  // namespace
@@ -105,47 +66,6 @@ const char* toString(TrackStatus status) {
       return "lost";
   }
   return "unknown";
-}
-
-Vector6d poseDifference(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to) {
-  Vector6d difference;
-  difference << to.translation() - from.translation(), rotationVector(to.linear() * from.linear().transpose());
-  return difference;
-}
-
-std::optional<UncertainPose> correctedBy(const MeasuredPosition& position, const UncertainPose& pose) {
-  requireFinite(position);
-  Eigen::Vector3d innovation;
-  Eigen::Matrix3d S;
-  if (!innovationOf(position, pose.T_map_base.translation(), pose.covariance.topLeftCorner<3, 3>(), innovation, S)) {
-    return std::nullopt;
-  }
-  const Eigen::Matrix<double, 6, 3> gain = pose.covariance.leftCols<3>() * S.inverse();
-  UncertainPose corrected = pose;
-  moveBy(gain * innovation, corrected.T_map_base);
-  Matrix6d remaining = Matrix6d::Identity();
-  remaining.leftCols<3>() -= gain;
-  corrected.covariance =
-      remaining * pose.covariance * remaining.transpose() + gain * position.covariance * gain.transpose();
-  return corrected;
-}
-
-Matrix6d anywhereCovariance() { return diagonal(kAnywhere_m, kPi); }
-
-bool isUnlikely(const Vector6d& error, const Matrix6d& covariance) {
-  return error.dot(covariance.ldlt().solve(error)) > kUnlikelySquaredMahalanobis;
-}
-
-Eigen::Isometry3d keptAlongFreeDirections(const Eigen::Isometry3d& T_map_predicted,
-                                          const Eigen::Isometry3d& T_map_aligned,
-                                          const PoseDirections& free_directions) {
-  if (free_directions.cols() == 0) return T_map_aligned;
-  const Vector6d difference = poseDifference(T_map_predicted, T_map_aligned);
-  const Vector6d held = difference - internal::projectorOnto(free_directions) * difference;
-  Eigen::Isometry3d T_map_kept = T_map_predicted;
-  T_map_kept.translation() += held.head<3>();
-  T_map_kept.linear() = rotationFromVector(held.tail<3>()) * T_map_predicted.linear();
-  return normalizedRotation(T_map_kept);
 }
 
 void MotionPredictionOptions::check() const {
@@ -212,20 +132,17 @@ void MotionPrediction::move(const std::optional<MeasuredMotion>& motion) {
   const Eigen::Matrix3d R_last_before = motion_->T_before_now.linear();
   Matrix6d F = Matrix6d::Identity();
   F.topRightCorner<3, 3>() -= skewSymmetric(R_last_before * motion->T_before_now.translation());
-  motion_->covariance = F * motion_->covariance * F.transpose() + turned(motion->covariance, R_last_before);
+  motion_->covariance = sumOfAlike(F * motion_->covariance * F.transpose(), turned(motion->covariance, R_last_before));
   motion_->T_before_now = normalizedRotation(motion_->T_before_now * motion->T_before_now);
 }
 
 Matrix6d MotionPrediction::correct(const MeasuredPosition& position) {
-  requireFinite(position);
-  Eigen::Vector3d innovation;
-  Eigen::Matrix3d S;
-  if (!innovationOf(position, state_.T_map_base.translation(), covariance_.topLeftCorner<3, 3>(), innovation, S)) {
-    return state_.covariance;
-  }
-  Eigen::Matrix<double, 18, 3> gain = covariance_.leftCols<3>() * S.inverse();
+  const Innovation innovation =
+      innovationOf(position, state_.T_map_base.translation(), covariance_.topLeftCorner<3, 3>());
+  if (innovation.is_outlier) return state_.covariance;
+  Eigen::Matrix<double, 18, 3> gain = covariance_.leftCols<3>() * innovation.covariance.inverse();
   gain.bottomRows<6>().setZero();  // accelerations are reckoned with, not estimated
-  const Eigen::Matrix<double, 18, 1> correction = gain * innovation;
+  const Eigen::Matrix<double, 18, 1> correction = gain * innovation.way_m;
   moveBy(correction.head<6>(), state_.T_map_base);
   const Eigen::Matrix3d R_base_map = state_.T_map_base.linear().transpose();
   state_.velocity_base_mps =
@@ -317,7 +234,7 @@ Matrix6d MotionPrediction::accept(const MeasuredPose& pose, double stamp_s) {
   if (state_.status == TrackStatus::NOT_INITIALIZED) reset(pose.T_map_base);
   const Interval interval = intervalTo(stamp_s);
   const Covariance predicted = propagated(interval);
-  const Matrix6d held = Matrix6d::Identity() - internal::projectorOnto(pose.free_directions);
+  const Matrix6d held = Matrix6d::Identity() - projectorOnto(pose.free_directions);
   Eigen::Matrix<double, 18, 6> gain = Eigen::Matrix<double, 18, 6>::Zero();
   gain.topRows<6>() = held;
   const auto updated = [&]() -> Covariance {

@@ -260,7 +260,7 @@ PoseAttempt PoseFinder::find(const SourcePoints& source, const PoseExpectation& 
     const PoseAttempt other = fromStarts(source, starts, &expectation, track);
     if (other.accepted()) found = other;
   }
-  if (!found.accepted() && search_ && track.status == TrackStatus::LOST) {
+  if (!found.accepted() && search_ && (track.status == TrackStatus::LOST || !in_reach)) {
     extent = SearchExtent::EVERYWHERE;
     const PoseAttempt other = fromStarts(source, searchedStarts(source, std::nullopt), nullptr, track);
     if (other.accepted() || !in_reach) found = other;

@@ -133,7 +133,7 @@ PoseExpectation PoseJudge::expectAnywhere(const Eigen::Isometry3d& T_map_base) c
   expectation.covariance = anywhereCovariance();
   expectation.max_correction_m = kSigmas * largestSigma(expectation.covariance.topLeftCorner<3, 3>());
   expectation.max_correction_deg = 180.0;
-  expectation.search_radius_m = kSigmas * kFreeSigma_m;
+  expectation.search_radius_m = kLeastSearchRadius_m;  // the search has looked everywhere
   expectation.unsure = true;
   expectation.vague = true;
   expectation.anywhere = true;

@@ -37,7 +37,9 @@ class MapTargets {
 /// A localizer at its initial pose.
 ScanLocalizer startedAt(const Eigen::Isometry3d& T_map_base, std::shared_ptr<Localizer> localizer) {
   localizer->setInitialPose(T_map_base);
-  return [localizer](const ScanView& scan, double stamp_s) { return localizer->localize(scan, stamp_s); };
+  return [localizer](const ScanView& scan, double stamp_s, const ScanPriors& priors) {
+    return localizer->localize(scan, stamp_s, priors);
+  };
 }
 
 LocalizerOptions optionsOf(const std::string& method, LocalizerOptions options) {

@@ -95,7 +95,7 @@ TEST_F(BenchmarkTest, AMethodDoesNotDependOnTheOthers) {
 TEST_F(BenchmarkTest, MethodsTakeTurnsAnotherOneFirstEachTime) {
   std::string order;
   const auto named = [&](char name) {
-    return [&order, name](const ScanView&, double stamp_s) {
+    return [&order, name](const ScanView&, double stamp_s, const ScanPriors&) {
       order += name;
       LocalizationResult result;
       result.stamp_s = stamp_s;

@@ -26,7 +26,7 @@ SAW_NDT_EXPORT DriveLocalization localizeDrive(Localizer& localizer, ScanSource&
                                                const std::function<void()>& scan_done = {});
 
 /// One way of localizing a scan: that of a Localizer, or one to compare it with.
-using ScanLocalizer = std::function<LocalizationResult(const ScanView& scan, double stamp_s)>;
+using ScanLocalizer = std::function<LocalizationResult(const ScanView& scan, double stamp_s, const ScanPriors& priors)>;
 
 /// The same for several methods at once. They take turns at every scan, another one first each time, so that a slow
 /// moment of the machine hits all of them; a scan is read once.

@@ -7,6 +7,7 @@
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/common/scan_view.h"
+#include "saw_ndt/localization/motion_prediction.h"
 
 namespace saw_ndt {
 
@@ -17,6 +18,7 @@ struct RecordedScan {
   double stamp_s = 0.0;                          ///< time of the scan
   std::vector<LidarPoint> points;                ///< in the order of the sensor
   std::optional<Eigen::Isometry3d> T_map_lidar;  ///< reference pose
+  ScanPriors priors;                             ///< what other sensors measured
   std::string failure;                           ///< why the points could not be read, empty where they could
 };
 

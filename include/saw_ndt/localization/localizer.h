@@ -81,12 +81,6 @@ struct LocalizationResult {
   bool accepted() const { return acceptance == Acceptance::ACCEPTED; }
 };
 
-/// What other sensors measured of a scan's pose, as far as there are any.
-struct ScanPriors {
-  std::optional<MeasuredMotion> motion;  ///< since the scan before that was given to localize(), accepted or not
-  std::optional<MeasuredPosition> position;
-};
-
 /// Registers a source, in the base's frame, from a predicted pose; fills AlignmentResult::likelihoods.
 using SourceAligner =
     std::function<AlignmentResult(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted)>;
@@ -141,6 +135,7 @@ class SAW_NDT_EXPORT Localizer {
   MotionPrediction prediction_;
   UncertainPose predictedPose(double stamp_s, const std::optional<MeasuredPosition>& position,
                               bool& without_track) const;
+  internal::PoseAttempt find(const SourcePoints& source, const UncertainPose& predicted, double stamp_s);
   UncertainPose accept(const internal::PoseAttempt& found, double stamp_s,
                        const std::optional<MeasuredPosition>& position, bool without_track);
 

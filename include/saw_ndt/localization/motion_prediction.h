@@ -34,13 +34,21 @@ struct MeasuredPose {
 /// The motion of the base from one scan to the next, as odometry measures it.
 struct MeasuredMotion {
   Eigen::Isometry3d T_before_now = Eigen::Isometry3d::Identity();  ///< pose of the base in the base's frame before
-  Matrix6d covariance = Matrix6d::Zero();  ///< by (translation, rotation) in the axes of the base before
+  /// By (translation, rotation) in the axes of the base before. Errors of successive motions may be alike, as those of
+  /// a drift: their standard deviations are added, not their variances.
+  Matrix6d covariance = Matrix6d::Zero();
 };
 
 /// A position of the base, as GNSS measures it.
 struct MeasuredPosition {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the map
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m^2
+};
+
+/// What other sensors measured of a scan's pose, as far as there are any.
+struct ScanPriors {
+  std::optional<MeasuredMotion> motion;  ///< since the scan before, accepted or not
+  std::optional<MeasuredPosition> position;
 };
 
 /// A pose and how sure it is.
