@@ -3,6 +3,7 @@
 
 #include "alignment_report.h"
 #include "app_options.h"
+#include "localization/pose_finder.h"
 #include "localization/source_voxel_filter.h"
 #include "pose_argument.h"
 #include "saw_ndt/common/error.h"
@@ -24,6 +25,7 @@ constexpr char kDescription[] =
 struct Arguments {
   std::string source_file, target_file, output_file;
   bool classical = false;
+  bool global = false;
   bool with_fitness = false;
   bool as_json = false;
   std::vector<double> guess = std::vector<double>(6, 0.0);
@@ -90,6 +92,42 @@ typename pcl::PointCloud<PointT>::Ptr thinned(const typename pcl::PointCloud<Poi
 }
 
 template <typename PointT>
+saw_ndt::SourcePoints sourcePointsOf(const pcl::PointCloud<PointT>& cloud) {
+  saw_ndt::SourcePoints source;
+  source.labelled = pcl::traits::has_label<PointT>::value;
+  for (const PointT& point : cloud) {
+    if (!saw_ndt::isWithinReach(point.x, point.y, point.z)) continue;
+    saw_ndt::StructuralLabel label = saw_ndt::StructuralLabel::NON_GROUND;
+    if constexpr (pcl::traits::has_label<PointT>::value) label = static_cast<saw_ndt::StructuralLabel>(point.label);
+    source.add(point.x, point.y, point.z, label);
+  }
+  return source;
+}
+
+// Where SOURCE is found on TARGET when nobody says where to start.
+Eigen::Isometry3d searched(const Arguments& arguments, const saw_ndt::NdtTarget& target,
+                           const saw_ndt::SourcePoints& source, const saw_ndt::AlignmentOptions& alignment) {
+  saw_ndt::LocalizerOptions options;
+  options.alignment = alignment;
+  options.alignment.evaluate_likelihoods = true;
+  constexpr double kShareOfOneScan = 0.05;  // what one scan sees of another is little beside what a map has
+  options.global_search.least_share = kShareOfOneScan;
+  options.acceptance.min_overlap = arguments.min_overlap;
+  options.acceptance.min_overlap_in_doubt = arguments.min_overlap;
+  options.acceptance.min_overlap_anywhere = arguments.min_overlap;
+  const auto aligner = [&target, &options, ndt = saw_ndt::NdtAligner()](const saw_ndt::SourcePoints& points,
+                                                                        const Eigen::Isometry3d& guess) mutable {
+    return ndt.align(target, points, guess, options.alignment);
+  };
+  const saw_ndt::internal::PoseAttempt found =
+      saw_ndt::internal::PoseFinder(aligner, target, options).findAnywhere(source);
+  if (found.accepted()) return found.alignment.T_map_source;
+  throw saw_ndt::Error(arguments.source_file, "",
+                       "was not found in " + arguments.target_file + ": " + saw_ndt::toString(found.acceptance) +
+                           ", overlap " + std::to_string(found.alignment.overlap));
+}
+
+template <typename PointT>
 void align(const Arguments& arguments) {
   const auto source = readCloud<PointT>(arguments.source_file);
   const auto target = readCloud<PointT>(arguments.target_file);
@@ -108,8 +146,11 @@ void align(const Arguments& arguments) {
   ndt.setAlignmentOptions(options);
   ndt.setInputTarget(target);
   ndt.setInputSource(thinned<PointT>(source, arguments.source_voxel_m));
+  const Eigen::Isometry3d guess =
+      arguments.global ? searched(arguments, ndt.getTargetMap(), sourcePointsOf(*ndt.getInputSource()), options)
+                       : saw_ndt::transformOf(arguments.guess);
   pcl::PointCloud<PointT> moved;
-  ndt.align(moved, saw_ndt::transformOf(arguments.guess).matrix());
+  ndt.align(moved, guess.matrix());
 
   const saw_ndt::AlignmentResult& result = ndt.getAlignmentResult();
   if (!ndt.hasConverged()) {
@@ -140,6 +181,8 @@ int main(int argc, char** argv) {
   app.addPositional("TARGET", &arguments.target_file, "cloud to move it onto, .pcd or .bin");
   app.addPositional("OUT.pcd", &arguments.output_file, "SOURCE in the frame of TARGET, to write", true);
   app.addOption("guess", &arguments.guess, saw_ndt::kPosePlaceholder, "transform to start from, metres and degrees");
+  app.addFlag("global", &arguments.global,
+              "look for SOURCE in all of TARGET, whatever the heading: both have z up, and labels help");
   app.addOption("resolution", &arguments.resolution_m, "METRES", "edge of a voxel of TARGET");
   app.addChoice("neighbors", &arguments.neighbors, {"radius", "direct26", "direct7", "direct1"},
                 "voxels that a point is paired with");
@@ -157,6 +200,7 @@ int main(int argc, char** argv) {
 
   return saw_ndt::runApp(argc, argv, app, [&] {
     arguments.threads = app.threads();
+    if (arguments.global && app.isGiven("guess")) throw saw_ndt::UsageError("option -global: excludes -guess");
     saw_ndt::checkedUsage([&] {
       saw_ndt::checkOption(arguments.resolution_m > 0.0, "resolution", arguments.resolution_m, "positive");
       saw_ndt::checkOption(arguments.max_iterations >= 1, "max-iterations", arguments.max_iterations, "1 or more");

@@ -21,7 +21,7 @@ constexpr int kHiddenGround = 5;
 // Without labels, a level surface so much higher than another one near by is no ground (m), nor one that is level by
 // less than this share of its curvature.
 constexpr double kRoof_m = 2.0;
-constexpr int kRoofBlock_m = 8;
+constexpr int kLowestBlock_m = 4;
 constexpr double kLevelShare = 0.9;
 
 // Larger voxels are taken to reach so many standard deviations from their mean.
@@ -85,12 +85,12 @@ void visitPoints(const NdtTarget& target, bool ground, const Visit& visit) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> withoutRoofs(const std::vector<Eigen::Vector3d>& level) {
+std::vector<Eigen::Vector3d> lowestOf(const std::vector<Eigen::Vector3d>& points, double most_height_m) {
   const auto blockOf = [](const Eigen::Vector3d& point, int axis) {
-    return static_cast<int>(std::floor(point[axis] / kRoofBlock_m));
+    return static_cast<int>(std::floor(point[axis] / kLowestBlock_m));
   };
   std::unordered_map<std::uint64_t, double> lowest;
-  for (const Eigen::Vector3d& point : level) {
+  for (const Eigen::Vector3d& point : points) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         double& height =
@@ -100,8 +100,8 @@ std::vector<Eigen::Vector3d> withoutRoofs(const std::vector<Eigen::Vector3d>& le
     }
   }
   std::vector<Eigen::Vector3d> ground;
-  for (const Eigen::Vector3d& point : level) {
-    if (point.z() < lowest.at(keyOf(blockOf(point, 0), blockOf(point, 1))) + kRoof_m) ground.push_back(point);
+  for (const Eigen::Vector3d& point : points) {
+    if (point.z() < lowest.at(keyOf(blockOf(point, 0), blockOf(point, 1))) + most_height_m) ground.push_back(point);
   }
   return ground;
 }
@@ -186,7 +186,7 @@ PlaceIndex::PlaceIndex(const NdtTarget& target) {
       level.push_back(point);
     }
   });
-  for (const Eigen::Vector3d& point : withoutRoofs(level)) ground.add(point);
+  for (const Eigen::Vector3d& point : lowestOf(level, kRoof_m)) ground.add(point);
   for (const Column& tile : ground.tiles()) {
     tile_numbers_.emplace(keyOf(tile.x, tile.y), tiles_.size());
     tiles_.emplace_back().at = tile;

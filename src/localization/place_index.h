@@ -48,8 +48,8 @@ class GroundHeights {
   std::unordered_map<std::uint64_t, Tile> tiles_;
 };
 
-/// Of points that may be ground, those less than 2 m above the lowest within some 10 m.
-std::vector<Eigen::Vector3d> withoutRoofs(const std::vector<Eigen::Vector3d>& level);
+/// Of points that may be ground, those no more than that above the lowest within some 6 m.
+std::vector<Eigen::Vector3d> lowestOf(const std::vector<Eigen::Vector3d>& points, double most_height_m);
 
 /// What stands where in a map, by height above the ground: bits, for each column of 1 m and each of 32 layers, and the
 /// columns in which a vehicle may stand. It is what a scan is looked up in when nobody knows where it was taken.

@@ -33,6 +33,11 @@ class PoseFinder {
   bool canSearch() const { return search_.has_value(); }
   PoseAttempt find(const SourcePoints& source, const PoseExpectation& expectation, const TrackState& track);
 
+  /// Without any expectation.
+  PoseAttempt findAnywhere(const SourcePoints& source) {
+    return find(source, judge_.expectAnywhere(Eigen::Isometry3d::Identity()), {});
+  }
+
   const PoseJudge& judge() const { return judge_; }
 
  private:

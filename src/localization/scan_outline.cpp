@@ -41,7 +41,7 @@ LabelledPoints pointsOf(const SourcePoints& source) {
     if (label == StructuralLabel::GROUND) points.ground.push_back(point);
     if (label == StructuralLabel::NON_GROUND) points.other.push_back(point);
   }
-  if (!source.labelled) points.ground = withoutRoofs(points.other);
+  if (!source.labelled) points.ground = lowestOf(points.other, kGroundThickness_m);
   return points;
 }
 
