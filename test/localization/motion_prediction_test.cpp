@@ -251,5 +251,132 @@ TEST(MotionPrediction, RefusesWhatIsNotFinite) {
   }
 }
 
+MeasuredMotion motionBetween(const Eigen::Isometry3d& before, const Eigen::Isometry3d& now, double sigma_m,
+                             double sigma_rad) {
+  MeasuredMotion motion;
+  motion.T_before_now = before.inverse() * now;
+  motion.covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
+      Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
+  return motion;
+}
+
+TEST(MotionPrediction, OdometryLeadsThroughRejectedScans) {
+  MotionPrediction prediction;
+  prediction.reset(onCircle(0.0));
+  prediction.move(motionBetween(onCircle(-5.0), onCircle(0.0), 0.1, 0.1));  // led to the initial pose
+  expectSamePose(prediction.predict(0.0), onCircle(0.0), 1e-12);
+  prediction.accept(onCircle(0.0), 0.0);
+  // Faster than before, and by stamps that say nothing.
+  Eigen::Isometry3d last = onCircle(0.0);
+  for (const double stamp_s : {1.0, 2.5, 4.5}) {
+    prediction.move(motionBetween(last, onCircle(stamp_s), 0.1, 0.001));
+    last = onCircle(stamp_s);
+    expectSamePose(prediction.predict(0.1), last, 1e-9);
+    prediction.reject(0.1);
+  }
+  // Errors that may be alike add up, each from one motion to the next: 0.1 m three times.
+  const Matrix6d covariance = prediction.predictedCovariance(0.1);
+  EXPECT_GT(std::sqrt(covariance(2, 2)), 0.29);
+  EXPECT_LT(std::sqrt(covariance(2, 2)), 0.33);
+  EXPECT_NEAR(std::sqrt(covariance(5, 5)), 0.003, 0.0003);
+  prediction.accept(last, 0.2);
+  // A scan without odometry: a constant velocity until the next pose.
+  prediction.move(motionBetween(last, onCircle(5.0), 0.1, 0.001));
+  prediction.reject(0.3);
+  prediction.move(std::nullopt);
+  const Eigen::Isometry3d by_velocity = prediction.predict(0.4);
+  prediction.reject(0.4);
+  prediction.move(motionBetween(onCircle(5.5), onCircle(6.0), 0.1, 0.001));
+  EXPECT_GT((prediction.predict(0.5).translation() - onCircle(6.0).translation()).norm(), 1.0);
+  MotionPrediction without;
+  without.accept(onCircle(0.0), 0.0);
+  without.accept(last, 0.2);
+  expectSamePose(by_velocity, without.predict(0.4), 1e-9);
+  prediction.accept(onCircle(6.0), 0.5);
+  prediction.move(motionBetween(onCircle(6.0), onCircle(6.4), 0.1, 0.001));
+  expectSamePose(prediction.predict(0.6), onCircle(6.4), 1e-9);
+}
+
+TEST(MotionPrediction, AWrongHeadingLeadsOdometryAstray) {
+  MotionPrediction prediction;
+  prediction.reset(poseAt(0.0, 0.0, 0.3));
+  MeasuredPose pose{poseAt(0.0, 0.0, 0.3)};
+  pose.covariance.diagonal().setConstant(1e-6);
+  pose.covariance(5, 5) = 0.01 * 0.01;
+  prediction.accept(pose, 0.0);
+  prediction.move(motionBetween(poseAt(0.0, 0.0, 0.0), poseAt(50.0, 0.0, 0.0), 0.0, 0.0));
+  const Eigen::Vector3d across(-std::sin(0.3), std::cos(0.3), 0.0);
+  const Eigen::Matrix3d covariance = prediction.predictedCovariance(1.0).topLeftCorner<3, 3>();
+  EXPECT_NEAR(std::sqrt(across.dot(covariance * across)), 0.5, 0.001);
+}
+
+TEST(MotionPrediction, APositionCorrectsWhatIsNotHeld) {
+  MotionPrediction prediction;
+  prediction.reset(poseAt(0.0, 0.0, 0.0));
+  MeasuredPose pose{poseAt(10.0, 5.0, 0.0)};
+  pose.covariance.diagonal() << 9.0, 1e-6, 1e-6, 1e-8, 1e-8, 1e-8;
+  prediction.accept(pose, 0.0);
+  MeasuredPosition position;
+  position.position_m = {14.0, 6.0, 0.5};
+  position.covariance.diagonal().setConstant(4.0);
+  const Matrix6d covariance = prediction.correct(position);
+  // The scalar Kalman filter along x; y is held, and moves by a millionth of the way.
+  EXPECT_NEAR(prediction.state().T_map_base.translation().x(), 10.0 + 4.0 * 9.0 / 13.0, 1e-9);
+  EXPECT_NEAR(prediction.state().T_map_base.translation().y(), 5.0, 1e-6);
+  EXPECT_NEAR(covariance(0, 0), 9.0 * 4.0 / 13.0, 1e-9);
+  EXPECT_NEAR(covariance(1, 1), 1e-6, 1e-11);
+  // 30 m off is no position of this vehicle.
+  const Eigen::Isometry3d before = prediction.state().T_map_base;
+  position.position_m.x() += 30.0;
+  EXPECT_EQ(prediction.correct(position), covariance);
+  EXPECT_EQ(prediction.state().T_map_base.matrix(), before.matrix());
+  position.position_m.x() = std::numeric_limits<double>::quiet_NaN();
+  expectThrows<std::invalid_argument>([&] { prediction.correct(position); }, {"position"});
+}
+
+TEST(MotionPrediction, CorrectedPosesAreThoseOfAKalmanFilter) {
+  UncertainPose pose{poseAt(1.0, 2.0, 0.1)};
+  pose.covariance.diagonal() << 4.0, 1.0, 1.0, 1e-4, 1e-4, 1e-2;
+  pose.covariance(1, 5) = pose.covariance(5, 1) = 0.05;  // who is too far left has turned too far left
+  MeasuredPosition position;
+  position.position_m = {2.0, 4.0, 0.5};
+  position.covariance.diagonal().setConstant(1.0);
+  const std::optional<UncertainPose> corrected = correctedBy(position, pose);
+  ASSERT_TRUE(corrected);
+  EXPECT_NEAR(corrected->T_map_base.translation().x(), 1.0 + 0.8, 1e-12);
+  EXPECT_NEAR(corrected->T_map_base.translation().y(), 2.0 + 1.0, 1e-12);
+  EXPECT_NEAR(heading(corrected->T_map_base), 0.1 + 0.05 / 2.0 * 2.0, 1e-12);
+  EXPECT_NEAR(corrected->covariance(5, 5), 1e-2 - 0.05 * 0.05 / 2.0, 1e-12);
+  position.position_m.x() = 100.0;
+  EXPECT_FALSE(correctedBy(position, pose));
+  // Where nothing is known, all is taken from the position.
+  const auto anywhere = correctedBy(position, {poseAt(0.0, 0.0, 0.0), anywhereCovariance()});
+  ASSERT_TRUE(anywhere);
+  EXPECT_NEAR(anywhere->T_map_base.translation().x(), 100.0, 1e-6);
+  EXPECT_NEAR(anywhere->covariance(0, 0), 1.0, 1e-6);
+}
+
+TEST(MotionPrediction, AnUnknownPoseIsLostUntilOneIsFound) {
+  MotionPrediction prediction;
+  prediction.resetUnknown();
+  EXPECT_EQ(prediction.state().status, TrackStatus::LOST);
+  EXPECT_FALSE(prediction.state().pose_known);
+  prediction.reject(1.0);
+  EXPECT_EQ(prediction.state().status, TrackStatus::LOST);
+  EXPECT_GT(prediction.predictedCovariance(1.1)(0, 0), 1e9);
+  MeasuredPose pose{onCircle(1.2)};
+  pose.covariance.diagonal().setConstant(1e-6);
+  prediction.restart(pose, 1.2);
+  EXPECT_EQ(prediction.state().status, TrackStatus::TRACKING);
+  EXPECT_TRUE(prediction.state().pose_known);
+  EXPECT_FALSE(prediction.state().velocity_known);
+  EXPECT_EQ(prediction.state().stamp_s, 1.2);
+  expectSamePose(prediction.predict(1.3), onCircle(1.2), 1e-12);
+  // The speed is not known: a few metres a tenth of a second later.
+  EXPECT_NEAR(std::sqrt(prediction.predictedCovariance(1.3)(0, 0)), 1.5, 0.1);
+  prediction.accept(onCircle(1.3), 1.3);
+  EXPECT_TRUE(prediction.state().velocity_known);
+}
+
 }  // namespace
 }  // namespace saw_ndt

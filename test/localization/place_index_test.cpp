@@ -80,7 +80,8 @@ TEST(CountMatches, CountsWhatOneLookUpAfterTheOtherCounts) {
       const std::uint64_t allowed[kRowsAtOnce] = {~std::uint64_t{0}, 0, 0xAAAAAAAAAAAAAAAA, ~std::uint64_t{0}};
       for (int first_row = 0; first_row < kPlaceTileSize; first_row += kRowsAtOnce) {
         PlaceCounts counts{};
-        const bool any = countMatches(random_tables.tables(), offsets.data(), count, first_row, threshold, allowed, counts);
+        const bool any =
+            countMatches(random_tables.tables(), offsets.data(), count, first_row, threshold, allowed, counts);
         bool expected_any = false;
         for (int row = 0; row < kRowsAtOnce; ++row) {
           for (int x = 0; x < kPlaceTileSize; ++x) {
@@ -92,7 +93,9 @@ TEST(CountMatches, CountsWhatOneLookUpAfterTheOtherCounts) {
             expected_any = expected_any || enough;
             if (!any) continue;
             ASSERT_EQ(((counts.enough[row] >> x) & 1U) != 0, enough);
-            if (enough) ASSERT_EQ(counts.count(row, x), expected);
+            if (enough) {
+              ASSERT_EQ(counts.count(row, x), expected);
+            }
           }
         }
         ASSERT_EQ(any, expected_any);
