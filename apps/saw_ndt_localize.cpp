@@ -78,6 +78,9 @@ int main(int argc, char** argv) {
                 "positions of the base in the map: TUM format, or CSV with the columns stamp_s, x_m, y_m, z_m and, "
                 "where they are known, sigma_x_m, sigma_y_m, sigma_z_m");
   app.addOption("gnss-sigma", &gnss_sigma_m, "METRES", "of a position whose file does not say");
+  app.addOption("search-budget", &options.search_budget_ms, "MS",
+                "time for a scan while all of the map is searched, which then goes on beside further scans (default: "
+                "until that is done)");
   app.addFlag("no-search", &no_search, "do not look for a pose that is lost, but align from predictions alone");
   app.addOption("base-lidar", &base_lidar, saw_ndt::kPosePlaceholder,
                 "pose of the LiDAR on the vehicle's base, metres and degrees; all zero: the base is the LiDAR");

@@ -1,12 +1,16 @@
 #include "saw_ndt/localization/localizer.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <stdexcept>
 #include <utility>
 
 #include "common/executor.h"
 #include "common/stopwatch.h"
 #include "localization/pose_finder.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
@@ -72,6 +76,7 @@ void LocalizerOptions::check() const {
   alignment.check();
   acceptance.check();
   global_search.check();
+  checkOption(search_budget_ms > 0.0, "search_budget_ms", search_budget_ms, "positive");
   preparationOptions(*this).check();
 }
 
@@ -93,6 +98,13 @@ Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
       prediction_(options.prediction),
       finder_(std::make_unique<PoseFinder>(std::move(aligner), options_)) {}
 
+// A search in a thread of its own.
+struct Localizer::OngoingSearch {
+  double stamp_s = 0.0;   // of the scan that is looked for
+  bool outdated = false;  // the vehicle has been found in another way
+  std::future<PoseAttempt> found;
+};
+
 Localizer::~Localizer() = default;
 Localizer::Localizer(Localizer&& other) noexcept = default;
 Localizer& Localizer::operator=(Localizer&& other) noexcept = default;
@@ -112,6 +124,12 @@ const char* toString(SearchExtent extent) {
 void Localizer::setUnknownPose() {
   if (!finder_->canSearch()) throw std::logic_error("setUnknownPose: there is no search, or no target to search in");
   prediction_.resetUnknown();
+  if (ongoing_search_) ongoing_search_->outdated = true;
+}
+
+void Localizer::setInitialPose(const Eigen::Isometry3d& T_map_base) {
+  prediction_.reset(T_map_base);
+  if (ongoing_search_) ongoing_search_->outdated = true;
 }
 
 PoseAttempt Localizer::find(const SourcePoints& source, const UncertainPose& predicted, double stamp_s) {
@@ -119,6 +137,35 @@ PoseAttempt Localizer::find(const SourcePoints& source, const UncertainPose& pre
   const PoseExpectation expectation = finder_->judge().expect(predicted.T_map_base, predicted.covariance, track,
                                                               stamp_s, options_.prediction.max_turn_rate_radps);
   return finder_->find(source, expectation, track);
+}
+
+// Within the budget; what is found later is where the vehicle was, from which the next scan goes on.
+PoseAttempt Localizer::searchEverywhere(const SourcePoints& source, double stamp_s, double elapsed_ms) {
+  if (std::isinf(options_.search_budget_ms)) return finder_->findAnywhere(source, prediction_.state());
+  PoseAttempt none;
+  none.search = SearchExtent::EVERYWHERE;
+  const auto isReady = [&](double wait_ms) {
+    return ongoing_search_->found.wait_for(std::chrono::duration<double, std::milli>(wait_ms)) ==
+           std::future_status::ready;
+  };
+  if (ongoing_search_ && ongoing_search_->outdated && isReady(0.0)) ongoing_search_.reset();
+  if (!ongoing_search_) {
+    ongoing_search_ = std::make_unique<OngoingSearch>();
+    ongoing_search_->stamp_s = stamp_s;
+    ongoing_search_->found =
+        std::async(std::launch::async, [finder = *finder_, source, track = prediction_.state()]() mutable {
+          return finder.findAnywhere(source, track);
+        });
+  }
+  if (ongoing_search_->outdated || !isReady(std::max(0.0, options_.search_budget_ms - elapsed_ms))) return none;
+  const PoseAttempt found = ongoing_search_->found.get();
+  const double found_stamp_s = ongoing_search_->stamp_s;
+  ongoing_search_.reset();
+  if (found_stamp_s == stamp_s || !found.accepted()) return found;
+  MeasuredPose pose{found.T_map_base, found.alignment.covariance, found.alignment.free_directions};
+  pose.overlap = found.alignment.overlap;
+  prediction_.restart(pose, found_stamp_s);
+  return none;
 }
 
 // The prediction with a measured position. Where the vehicle is lost, that alone may be right.
@@ -173,6 +220,13 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
     const PoseAttempt other =
         find(source, {prediction_.predict(stamp_s), prediction_.predictedCovariance(stamp_s)}, stamp_s);
     if (other.accepted()) found = other;
+  }
+  const bool is_lost = prediction_.state().status == TrackStatus::LOST || !PoseFinder::isInReach(predicted.covariance);
+  if (is_lost && finder_->isWorthSearching(found, prediction_.state())) {
+    const PoseAttempt other = searchEverywhere(source, stamp_s, total.milliseconds());
+    if (other.accepted() || without_track) found = other;
+  } else if (ongoing_search_) {
+    ongoing_search_->outdated = true;
   }
   result.times.align_ms = alignment.milliseconds();
 

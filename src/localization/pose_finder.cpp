@@ -239,33 +239,38 @@ PoseAttempt PoseFinder::fromStarts(const SourcePoints& source, const std::vector
   return found;
 }
 
+bool PoseFinder::isWorthSearching(const PoseAttempt& found, const TrackState& track) const {
+  if (!search_ || found.accepted()) return false;
+  const bool fits = found.alignment.converged() && track.usual_overlap && !judge_.fitsWorse(found.alignment, track);
+  return !(fits && found.acceptance == Acceptance::UNDETERMINED);
+}
+
+bool PoseFinder::isInReach(const Matrix6d& covariance) {
+  return kRegion_sigmas * horizontalSigma(covariance) <= kGreatestRegion_m;
+}
+
 PoseAttempt PoseFinder::find(const SourcePoints& source, const PoseExpectation& expectation, const TrackState& track) {
-  const bool in_reach = kRegion_sigmas * horizontalSigma(expectation.covariance) <= kGreatestRegion_m;
-  const bool is_start = !track.stamp_s || track.status != TrackStatus::TRACKING;
-  SearchExtent extent = SearchExtent::NONE;
-  std::vector<Eigen::Isometry3d> starts;
-  const auto searchAround = [&] {
-    if (!search_ || !in_reach || extent == SearchExtent::AROUND) return;
-    extent = SearchExtent::AROUND;
-    starts = searchedStarts(source, regionOf(expectation));
-  };
   PoseAttempt found;
-  if (in_reach) {
-    found = fromPrediction(source, expectation, track);
-    if (found.accepted() && is_start && expectation.vague) searchAround();
-    found = settled(source, found, starts, expectation, track);
+  if (!isInReach(expectation.covariance)) return found;
+  const bool is_start = !track.stamp_s || track.status != TrackStatus::TRACKING;
+  std::optional<std::vector<Eigen::Isometry3d>> starts;
+  found = fromPrediction(source, expectation, track);
+  if (search_ && found.accepted() && is_start && expectation.vague) {
+    starts = searchedStarts(source, regionOf(expectation));
   }
-  if (!found.accepted() && found.acceptance != Acceptance::AMBIGUOUS) {
-    searchAround();
-    const PoseAttempt other = fromStarts(source, starts, &expectation, track);
+  found = settled(source, found, starts.value_or(std::vector<Eigen::Isometry3d>()), expectation, track);
+  if (isWorthSearching(found, track) && found.acceptance != Acceptance::AMBIGUOUS) {
+    if (!starts) starts = searchedStarts(source, regionOf(expectation));
+    const PoseAttempt other = fromStarts(source, *starts, &expectation, track);
     if (other.accepted()) found = other;
   }
-  if (!found.accepted() && search_ && (track.status == TrackStatus::LOST || !in_reach)) {
-    extent = SearchExtent::EVERYWHERE;
-    const PoseAttempt other = fromStarts(source, searchedStarts(source, std::nullopt), nullptr, track);
-    if (other.accepted() || !in_reach) found = other;
-  }
-  found.search = extent;
+  if (starts) found.search = SearchExtent::AROUND;
+  return found;
+}
+
+PoseAttempt PoseFinder::findAnywhere(const SourcePoints& source, const TrackState& track) {
+  PoseAttempt found = fromStarts(source, searchedStarts(source, std::nullopt), nullptr, track);
+  found.search = SearchExtent::EVERYWHERE;
   return found;
 }
 

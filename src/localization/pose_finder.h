@@ -22,7 +22,7 @@ struct PoseAttempt {
 };
 
 /// Finds the pose of a scan: from the prediction, from the last pose, from where a search finds the scan around the
-/// prediction and, where the vehicle is lost, everywhere. A pose in doubt is compared with others.
+/// prediction, or everywhere. A pose in doubt is compared with others. Copies share target and search alone.
 class PoseFinder {
  public:
   /// Finds without a target: nothing but the aligner tells of poses.
@@ -31,12 +31,15 @@ class PoseFinder {
   PoseFinder(SourceAligner aligner, const NdtTarget& target, const LocalizerOptions& options);
 
   bool canSearch() const { return search_.has_value(); }
+  /// Whether another place may tell more than what was found. Not where the scan fits as usual but does not say where
+  /// along something it was taken: it would fit no better anywhere.
+  bool isWorthSearching(const PoseAttempt& found, const TrackState& track) const;
+  /// Whether a prediction of that covariance is of any use.
+  static bool isInReach(const Matrix6d& covariance);
+  /// From the prediction and around it; not at all where that is not in reach.
   PoseAttempt find(const SourcePoints& source, const PoseExpectation& expectation, const TrackState& track);
-
-  /// Without any expectation.
-  PoseAttempt findAnywhere(const SourcePoints& source) {
-    return find(source, judge_.expectAnywhere(Eigen::Isometry3d::Identity()), {});
-  }
+  /// Without regard to a prediction. @pre canSearch()
+  PoseAttempt findAnywhere(const SourcePoints& source, const TrackState& track = {});
 
   const PoseJudge& judge() const { return judge_; }
 

@@ -46,10 +46,6 @@ double largestSigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
-bool fitsWorse(const AlignmentResult& alignment, const TrackState& track) {
-  return alignment.overlap < kLessThanUsual * track.usual_overlap.value_or(0.0);
-}
-
 // The covariance without what is free.
 Matrix6d heldCovariance(const AlignmentResult& alignment) {
   const Matrix6d held = Matrix6d::Identity() - internal::projectorOnto(alignment.free_directions);
@@ -164,6 +160,10 @@ Acceptance PoseJudge::judge(const AlignmentResult& alignment, const Eigen::Isome
   if (!(correction.distance_m <= expectation.max_correction_m)) return Acceptance::LARGE_TRANSLATION;
   if (!(degreesFromRadians(correction.angle_rad) <= expectation.max_correction_deg)) return Acceptance::LARGE_ROTATION;
   return Acceptance::ACCEPTED;
+}
+
+bool PoseJudge::fitsWorse(const AlignmentResult& alignment, const TrackState& track) const {
+  return alignment.overlap < kLessThanUsual * track.usual_overlap.value_or(0.0);
 }
 
 bool PoseJudge::isSurprising(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,

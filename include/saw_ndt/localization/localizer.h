@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +35,10 @@ struct SAW_NDT_EXPORT LocalizerOptions {
   AcceptanceOptions acceptance;
   bool search = true;                 ///< look for a pose that has been lost, and at the start around the initial one
   GlobalSearchOptions global_search;  ///< how
+  /// How long a scan may take while all of the map is searched (ms); infinite: until that is done. A search that takes
+  /// longer goes on in a thread of its own while further scans come, and what it finds is where the vehicle was when it
+  /// began. Results then depend on how fast the machine is.
+  double search_budget_ms = std::numeric_limits<double>::infinity();
   /// Go on where the labels of the map were made by other segmentation options, such as those of another sensor.
   bool allow_other_segmentation = false;
 
@@ -113,7 +118,7 @@ class SAW_NDT_EXPORT Localizer {
 
   /// Where the vehicle is at the first scan, or after it was lost.
   /// @throws std::invalid_argument unless it is a finite rigid transform
-  void setInitialPose(const Eigen::Isometry3d& T_map_base) { prediction_.reset(T_map_base); }
+  void setInitialPose(const Eigen::Isometry3d& T_map_base);
   /// Nobody knows where the vehicle is at the first scan: it is looked for everywhere.
   /// @throws std::logic_error where the localizer has no target of this library, or options().search is false
   void setUnknownPose();
@@ -139,7 +144,12 @@ class SAW_NDT_EXPORT Localizer {
   UncertainPose accept(const internal::PoseAttempt& found, double stamp_s,
                        const std::optional<MeasuredPosition>& position, bool without_track);
 
+  internal::PoseAttempt searchEverywhere(const SourcePoints& source, double stamp_s, double elapsed_ms);
+
+  struct OngoingSearch;
+
   std::unique_ptr<internal::PoseFinder> finder_;
+  std::unique_ptr<OngoingSearch> ongoing_search_;
 };
 
 }  // namespace saw_ndt

@@ -102,6 +102,9 @@ class SAW_NDT_EXPORT PoseJudge {
   bool isSurprising(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
                     const PoseExpectation& expectation) const;
 
+  /// Whether fewer points lie on the map than usual in this drive, where that is known.
+  bool fitsWorse(const AlignmentResult& alignment, const TrackState& track) const;
+
   /// Whether a pose that judge() accepts needs a second look: it is vaguely expected or surprising, something is free,
   /// or fewer points lie on the map than usual.
   bool isDoubtful(const AlignmentResult& alignment, const Eigen::Isometry3d& T_map_base,
