@@ -38,9 +38,58 @@ Apply wrongStart(double distance_m, double angle_deg) {
   return [=](CampaignRun& run, const LoadedDrive&, SceneRandom& random) {
     const double direction = random.uniform(-kPi, kPi);
     const double angle = radiansFromDegrees(angle_deg) * (random.chance(0.5) ? 1.0 : -1.0);
-    Eigen::Isometry3d& T = run.T_map_base_initial;
+    Eigen::Isometry3d& T = *run.T_map_base_initial;
     T.translation() += distance_m * Eigen::Vector3d(std::cos(direction), std::sin(direction), 0.0);
     T.linear() = (Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * T.linear()).eval();
+  };
+}
+
+/// Nobody knows where the vehicle is.
+void unknownStart(CampaignRun& run, const LoadedDrive&, SceneRandom&) { run.T_map_base_initial.reset(); }
+
+/// Odometry that drifts by a share of the way and so many degrees a second.
+Apply withOdometry(Apply fault, double share, double deg_per_s) {
+  return [=](CampaignRun& run, const LoadedDrive& drive, SceneRandom& random) {
+    if (fault) fault(run, drive, random);
+    const double side = random.chance(0.5) ? 1.0 : -1.0;
+    for (std::size_t i = 1; i < run.scans.size(); ++i) {
+      const double duration_s = run.scans[i].stamp_s - run.scans[i - 1].stamp_s;
+      MeasuredMotion& motion = run.scans[i].priors.motion.emplace();
+      motion.T_before_now = run.scans[i - 1].T_map_lidar.inverse() * run.scans[i].T_map_lidar;
+      const double sigma_m = share * motion.T_before_now.translation().norm() + 1e-3;
+      const double sigma_rad = radiansFromDegrees(deg_per_s * duration_s) + 1e-5;
+      motion.T_before_now.translation() *= 1.0 + side * share;
+      motion.T_before_now.linear() =
+          (motion.T_before_now.linear() * rotationFromVector({0.0, 0.0, side * sigma_rad})).eval();
+      motion.covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
+          Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
+    }
+  };
+}
+
+/// About normally distributed, of variance 1.
+Eigen::Vector3d normalVector(SceneRandom& random) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 12; ++i) {
+    for (int axis = 0; axis < 3; ++axis) sum[axis] += random.uniform(-0.5, 0.5);
+  }
+  return sum;
+}
+
+/// Positions by GNSS, one in ten of which is 30 m off.
+Apply withPositions(Apply fault, double sigma_m) {
+  return [=](CampaignRun& run, const LoadedDrive& drive, SceneRandom& random) {
+    if (fault) fault(run, drive, random);
+    constexpr double kOutliers = 0.1, kOutlier_m = 30.0;
+    for (PlayedScan& scan : run.scans) {
+      MeasuredPosition& position = scan.priors.position.emplace();
+      const double direction = random.uniform(-kPi, kPi);
+      const double outlier_m = random.chance(kOutliers) ? kOutlier_m : 0.0;
+      position.position_m = scan.T_map_lidar.translation() +
+                            outlier_m * Eigen::Vector3d(std::cos(direction), std::sin(direction), 0.0) +
+                            sigma_m * normalVector(random);
+      position.covariance.diagonal().setConstant(sigma_m * sigma_m);
+    }
   };
 }
 
@@ -66,6 +115,7 @@ void alterForAWhile(CampaignRun& run, const std::function<void(std::vector<Lidar
   for (std::size_t i = run.fault_begin; i < std::min(run.scans.size(), run.fault_begin + kFaultyScans); ++i) {
     run.scans[i].alter = [alter, i](std::vector<LidarPoint>& points) { alter(points, i); };
   }
+  run.fault_end = run.fault_begin + kFaultyScans;
 }
 
 Apply blockedView(double share) {
@@ -160,6 +210,10 @@ void braking(CampaignRun& run, const LoadedDrive&, SceneRandom&) {
 
 /// The map has the fault.
 void otherPlace(CampaignRun& run, const LoadedDrive&, SceneRandom&) { run.place_in_map = false; }
+void otherPlaceUnknown(CampaignRun& run, const LoadedDrive&, SceneRandom&) {
+  run.place_in_map = false;
+  run.T_map_base_initial.reset();
+}
 
 std::vector<Fault> makeFaults() {
   std::vector<Fault> faults;
@@ -179,12 +233,19 @@ std::vector<Fault> makeFaults() {
   for (const auto& [m, deg] : {std::pair(1.0, 5.0), {2.0, 10.0}, {5.0, 20.0}, {10.0, 45.0}, {50.0, 180.0}}) {
     addFromStart("wrong_start_and_heading", text(m, " m, ") + text(deg, " deg"), wrongStart(m, deg));
   }
+  addFromStart("unknown_start", "", unknownStart);
+  addFromStart("unknown_start_with_gnss", "", withPositions(unknownStart, 2.0));
   add("kidnapping", "", kidnap);
+  add("kidnapping_with_gnss", "", withPositions(kidnap, 2.0));
   for (const double percent : {20, 50, 90}) add("blocked_view", text(percent, " %"), blockedView(percent / 100.0));
   for (const double percent : {5, 20, 50}) add("rain", text(percent, " % near"), rain(rainOn, percent / 100.0));
   for (const double percent : {50, 90}) add("rain", text(percent, " % lost"), rain(loseReturns, percent / 100.0));
   add("dense_traffic", "", none, CampaignDrive::DENSE_TRAFFIC);
   for (const double s : {0.5, 1.0, 2.0, 5.0, 10.0}) add("dropped_scans", text(s, " s"), drop(s));
+  for (const double s : {2.0, 5.0, 10.0}) {
+    add("dropped_scans_with_odometry", text(s, " s"), withOdometry(drop(s), 0.02, 0.5));
+    add("dropped_scans_with_gnss", text(s, " s"), withPositions(drop(s), 2.0));
+  }
   add("repeated_scans", "same stamp", repeatStamped);
   add("repeated_scans", "next stamp", repeatAsNext);
   add("swapped_scans", "own stamps", swapScans(false));
@@ -207,6 +268,7 @@ std::vector<Fault> makeFaults() {
   add("moved_sensor", "0.2 m left", movedSensor(0.0, 0.0, {0.0, 0.2, 0.0}));
   add("moved_sensor", "0.2 m up", movedSensor(0.0, 0.0, {0.0, 0.0, 0.2}));
   addFromStart("other_place", "", otherPlace, CampaignMap::OF_OTHER_SCENE);
+  addFromStart("other_place", "unknown start", otherPlaceUnknown, CampaignMap::OF_OTHER_SCENE);
   add("changed_place", "", none, CampaignDrive::TEST, CampaignMap::CHANGED);
   return faults;
 }

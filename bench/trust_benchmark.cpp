@@ -91,7 +91,11 @@ TrustCounts play(const saw_ndt::CampaignRun& run, const saw_ndt::LoadedDrive& dr
   options.prediction.initial_sigma_deg = initial_sigma_deg;
   options.alignment.threads = 1;
   saw_ndt::Localizer localizer(place.target, options);
-  localizer.setInitialPose(place.start.value_or(run.T_map_base_initial));
+  if (run.T_map_base_initial) {
+    localizer.setInitialPose(place.start.value_or(*run.T_map_base_initial));
+  } else {
+    localizer.setUnknownPose();
+  }
   saw_ndt::RunJudge judge(run);
   std::vector<saw_ndt::LidarPoint> altered;
   try {
@@ -102,7 +106,7 @@ TrustCounts play(const saw_ndt::CampaignRun& run, const saw_ndt::LoadedDrive& dr
         scan.alter(altered);
         points = &altered;
       }
-      judge.see(localizer.localize(saw_ndt::viewOf(*points), scan.stamp_s));
+      judge.see(localizer.localize(saw_ndt::viewOf(*points), scan.stamp_s, scan.priors));
       if (!trace) continue;
       const std::lock_guard<std::mutex> lock(output);
       std::cerr << name << ": " << judge.lastInWords() << '\n';

@@ -14,6 +14,7 @@ namespace {
 constexpr double kGreatestDistance_m = 0.5, kGreatestAngle_deg = 2.0;
 constexpr double kChiSquared95 = 12.592;  // of six degrees of freedom
 constexpr double kFreeSigmas = 3.0;
+constexpr double kRecoveryTime_s = 5.0, kScansPerSecond = 10.0;
 
 bool isRight(const PoseDifference& difference) {
   return difference.distance_m() <= kGreatestDistance_m && difference.angle_deg() <= kGreatestAngle_deg;
@@ -102,6 +103,8 @@ void TrustCounts::add(const TrustCounts& other) {
   astray_runs += other.astray_runs;
   scans_until_lost.insert(scans_until_lost.end(), other.scans_until_lost.begin(), other.scans_until_lost.end());
   wrongly_lost_runs += other.wrongly_lost_runs;
+  ended_faults += other.ended_faults;
+  recovered_runs += other.recovered_runs;
   of_accepted.add(other.of_accepted);
   of_rejected.add(other.of_rejected);
 }
@@ -136,6 +139,12 @@ void RunJudge::see(const LocalizationResult& result) {
     Consistency& consistency = result.accepted() ? counts_.of_accepted : counts_.of_rejected;
     consistency.add(normalizedSquaredError(published, result.covariance));
   }
+  const std::size_t fault_end = std::max(run_.fault_begin, run_.fault_end);
+  const auto after_fault = static_cast<double>(scan_number) - static_cast<double>(fault_end);
+  if (run_.place_in_map && after_fault >= 0.0) {
+    counts_.ended_faults = 1;
+    recovered_ = recovered_ || (result.accepted() && !wrong && after_fault < kRecoveryTime_s * kScansPerSecond);
+  }
   if (was_lost_) return;
   if (!wrong) {
     wrong_since_ = -1;
@@ -153,6 +162,7 @@ void RunJudge::see(const LocalizationResult& result) {
 }
 
 TrustCounts RunJudge::finish() {
+  counts_.recovered_runs = recovered_ ? 1 : 0;
   if (!was_lost_ && wrong_since_ >= 0) counts_.astray_runs = 1;
   return counts_;
 }
@@ -162,7 +172,7 @@ std::string trustTableHead(const std::vector<std::string>& names) {
   for (const char* name :
        {"runs", "scans", "accepted %", "rejected though right", "wrong accepted", "worst accepted (m / deg)",
         "accepted of nothing", "astray before", "astray", "told lost", "scans until lost (median)", "wrongly lost",
-        "NEES / 6", "inside 95 % (%)", "rejected inside 95 % (%)", "failed"}) {
+        "recovered in 5 s (%)", "NEES / 6", "inside 95 % (%)", "rejected inside 95 % (%)", "failed"}) {
     columns.emplace_back(name);
   }
   std::string head = "|", rule = "|";
@@ -189,6 +199,7 @@ std::string trustTableRow(const std::vector<std::string>& names, const TrustCoun
   cells.push_back(std::to_string(counts.scans_until_lost.size()));
   cells.push_back(counts.scans_until_lost.empty() ? "" : number(internal::median(counts.scans_until_lost), "%.1f"));
   cells.push_back(std::to_string(counts.wrongly_lost_runs));
+  cells.push_back(percentOf(counts.recovered_runs, counts.ended_faults));
   cells.push_back(meanOf(counts.of_accepted));
   cells.push_back(percentOf(counts.of_accepted.inside, counts.of_accepted.count));
   cells.push_back(percentOf(counts.of_rejected.inside, counts.of_rejected.count));

@@ -51,6 +51,8 @@ struct TrustCounts {
   int astray_runs = 0;
   std::vector<double> scans_until_lost;  ///< of those where it said so
   int wrongly_lost_runs = 0;             ///< it said so while the published pose was right
+  int ended_faults = 0;                  ///< runs with good scans after the fault, in a map of the place
+  int recovered_runs = 0;                ///< of those: a right pose was accepted within 5 s
   Consistency of_accepted, of_rejected;
 
   void add(const TrustCounts& other);
@@ -80,6 +82,7 @@ class RunJudge {
   int wrong_since_ = -1;
   std::string first_wrong_accepted_, last_in_words_;
   bool was_lost_ = false;
+  bool recovered_ = false;
 };
 
 /// The head of a Markdown table of TrustCounts, behind columns of the given names.
