@@ -137,8 +137,9 @@ int main(int argc, char** argv) {
     if (initial_pose == kUnknown) {
       localizer.setUnknownPose();
     } else {
-      localizer.setInitialPose(T_map_base_initial.value_or(
-          sequence.posesLidar()[static_cast<std::size_t>(selected.front())] * options.T_base_lidar.inverse()));
+      localizer.setInitialPose(T_map_base_initial ? *T_map_base_initial
+                                                  : sequence.posesLidar()[static_cast<std::size_t>(selected.front())] *
+                                                        options.T_base_lidar.inverse());
     }
 
     saw_ndt::OutputFolder folder(out_dir);

@@ -165,5 +165,21 @@ TEST_F(AlignApp, RealScans) {
   expectNear(transformIn(json), poses[0].inverse() * poses[2], 0.05, 0.2);
 }
 
+TEST_F(AlignApp, RealScansAreFoundWithoutAGuess) {
+  if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
+  const KittiSequence sequence(realDataFolder() / "kitti" / "sequences" / "drive_0005");
+  const KittiSequence elsewhere(realDataFolder() / "kitti" / "sequences" / "00");
+  const std::vector<Eigen::Isometry3d> poses = sequence.posesLidar();
+  const std::string target = "'" + sequence.scanPath(0).string() + "' -global";
+  // 9.7 m away and turned by 21 degrees: out of reach of an alignment from the identity. The scans see half of each
+  // other, and references are those of GNSS.
+  expectNear(transformIn(jsonOf("'" + sequence.scanPath(30).string() + "' " + target)), poses[0].inverse() * poses[30],
+             0.3, 0.5);
+  const AppResult result = run("'" + elsewhere.scanPath(0).string() + "' " + target);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.errors.find("was not found in"), std::string::npos) << result.errors;
+  EXPECT_EQ(run("'" + sequence.scanPath(2).string() + "' " + target + " -guess 1,0,0,0,0,0").exit_code, 2);
+}
+
 }  // namespace
 }  // namespace saw_ndt

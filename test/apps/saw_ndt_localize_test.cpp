@@ -141,6 +141,56 @@ TEST_F(LocalizeApp, AnInitialPoseStandsInForTheReference) {
   expectLocalizeFails(1, {"calib.txt: No such file"}, found);
 }
 
+TEST_F(LocalizeApp, AnUnknownStartIsFound) {
+  buildMap();
+  ASSERT_EQ(localize("-skip 0 ").exit_code, 0);
+  const auto expected = readTumTrajectory(out / "trajectory_tum.txt");
+  for (const std::string start : {"-initial-pose unknown ", "-initial-pose 1,-2,0,0,0,120 -initial-yaw-range 180 "}) {
+    SCOPED_TRACE(start);
+    ASSERT_EQ(localize("-skip 0 " + start).exit_code, 0);
+    EXPECT_EQ(summary().at("accepted"), 6);
+    EXPECT_LT(summary().at("position_max_m"), 0.03);
+    EXPECT_EQ(frames()[0].substr(frames()[0].rfind(',')), ",search");
+    EXPECT_NE(frames()[1].substr(frames()[1].rfind(',')), ",");
+    EXPECT_EQ(frames()[6].substr(frames()[6].rfind(',')), ",");
+    const auto got = readTumTrajectory(out / "trajectory_tum.txt");
+    ASSERT_EQ(got.size(), expected.size());
+    // The first scan ends within the epsilon of 1 mm of the same pose.
+    EXPECT_LT((got[5].T_map_body.translation() - expected[5].T_map_body.translation()).norm(), 0.002);
+  }
+  // Nothing is known of scans before the first that is found: they have no pose.
+  ASSERT_EQ(localize("-skip 0 -initial-pose unknown -min-likelihood 50").exit_code, 1);
+  EXPECT_TRUE(contentOf(out / "trajectory_tum.txt").empty());
+  EXPECT_EQ(frames().size(), 7U);
+}
+
+TEST_F(LocalizeApp, OdometryAndPositionsAreTaken) {
+  buildMap();
+  const KittiSequence sequence(drive_folder);
+  std::vector<StampedPose> odometry;
+  std::ofstream gnss(folder.path() / "gnss.csv");
+  gnss << "stamp_s,x_m,y_m,z_m,sigma_x_m,sigma_y_m,sigma_z_m\n";
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Eigen::Isometry3d& T = sequence.posesLidar()[i];
+    odometry.push_back({sequence.stamps()[i], T});
+    const Eigen::Vector3d position = T.translation() + Eigen::Vector3d(i == 2 ? 40.0 : 1.0, -1.0, 0.5);
+    gnss << sequence.stamps()[i] << ',' << position.x() << ',' << position.y() << ',' << position.z() << ",2,2,2\n";
+  }
+  gnss.close();
+  writeTumTrajectory(folder.path() / "odometry.txt", odometry);
+  const std::string odometry_option = "-odometry " + quoted(folder.path() / "odometry.txt");
+  const std::string gnss_option = "-gnss " + quoted(folder.path() / "gnss.csv");
+  for (const std::string& options :
+       {odometry_option, gnss_option, odometry_option + gnss_option + "-initial-pose unknown "}) {
+    ASSERT_EQ(localize("-skip 0 " + options).exit_code, 0) << options;
+    EXPECT_EQ(summary().at("accepted"), 6);
+    EXPECT_LT(summary().at("position_max_m"), 0.03);
+  }
+  expectLocalizeFails(1, {"nowhere.txt"}, "-odometry nowhere.txt");
+  expectLocalizeFails(1, {"times.txt: line 1"}, "-gnss " + quoted(drive_folder / "times.txt"));
+  expectLocalizeFails(2, {"gnss-sigma"}, gnss_option + "-gnss-sigma 0");
+}
+
 TEST_F(LocalizeApp, AMountedLidar) {
   buildMap();
   ASSERT_EQ(localize("-skip 0 -base-lidar 1,0.2,1.7,1,2,30").exit_code, 0);
@@ -168,7 +218,12 @@ TEST_F(LocalizeApp, WrongUsageIsNamed) {
   expectLocalizeFails(2, {"source_voxel_size_m = -0.2"}, "-source-voxel -0.2");
   expectLocalizeFails(2, {"max_iterations = 0"}, "-max-iterations 0");
   expectLocalizeFails(2, {"max_correction_m = 0"}, "-max-correction 0");
-  expectLocalizeFails(2, {"-initial-pose"}, "-initial-pose 1,2,3");
+  expectLocalizeFails(2, {"-initial-pose", "'1,2,3'"}, "-initial-pose 1,2,3");
+  expectLocalizeFails(2, {"-initial-pose", "'1,2,3,4,5,x'"}, "-initial-pose 1,2,3,4,5,x");
+  expectLocalizeFails(2, {"-initial-pose unknown", "-no-search"}, "-initial-pose unknown -no-search");
+  expectLocalizeFails(2, {"initial-yaw-range", "181"}, "-initial-yaw-range 181");
+  expectLocalizeFails(2, {"initial-radius"}, "-initial-radius 0");
+  expectLocalizeFails(2, {"search_budget_ms = 0"}, "-search-budget 0");
   expectLocalizeFails(2, {"scan selection '9'"}, "-scans 9");
   expectFails(SAW_NDT_APP, files() + "-skip -1", 2, {"-skip"});
   expectFails(SAW_NDT_APP, quoted(drive_folder) + quoted(map_file), 2, {"missing OUT_DIR"});
