@@ -9,6 +9,7 @@
 
 #include "common/executor.h"
 #include "map/ndt_level.h"
+#include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt::internal {
 namespace {
@@ -26,8 +27,6 @@ constexpr double kLevelShare = 0.9;
 
 // Larger voxels are taken to reach so many standard deviations from their mean.
 constexpr double kReach_sigmas = 1.2;
-
-constexpr double kFarthest_m = 1.0e9;
 
 int tileOf(int column) { return column >> 6; }
 int placeInTile(const Column& column) { return (column.y & 63) * kPlaceTileSize + (column.x & 63); }

@@ -12,7 +12,7 @@
 namespace saw_ndt::internal {
 
 /// An alignment, and what is thought of it.
-struct PoseAttempt {
+struct SAW_NDT_EXPORT PoseAttempt {
   AlignmentResult alignment;
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();  ///< along free directions the expected pose
   Acceptance acceptance = Acceptance::NOT_CONVERGED;
@@ -23,7 +23,7 @@ struct PoseAttempt {
 
 /// Finds the pose of a scan: from the prediction, from the last pose, from where a search finds the scan around the
 /// prediction, or everywhere. A pose in doubt is compared with others. Copies share target and search alone.
-class PoseFinder {
+class SAW_NDT_EXPORT PoseFinder {
  public:
   /// Finds without a target: nothing but the aligner tells of poses.
   PoseFinder(SourceAligner aligner, const LocalizerOptions& options);

@@ -11,7 +11,7 @@
 namespace saw_ndt::internal {
 namespace {
 
-constexpr double kFarthest_m = 60.0;
+constexpr double kRange_m = 60.0;
 
 // What stands below this layer may have been driven away; it counts where less stands above.
 constexpr int kLowestLastingLayer = 2;
@@ -36,7 +36,7 @@ LabelledPoints pointsOf(const SourcePoints& source) {
   LabelledPoints points;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const Eigen::Vector3d point(source.x[i], source.y[i], source.z[i]);
-    if (!(std::max(std::abs(point.x()), std::abs(point.y())) < kFarthest_m)) continue;
+    if (!(std::max(std::abs(point.x()), std::abs(point.y())) < kRange_m)) continue;
     const auto label = static_cast<StructuralLabel>(source.label[i]);
     if (label == StructuralLabel::GROUND) points.ground.push_back(point);
     if (label == StructuralLabel::NON_GROUND) points.other.push_back(point);
@@ -67,7 +67,7 @@ ScanOutline outlineOf(const SourcePoints& source, std::size_t most_cells) {
     const Column column{static_cast<int>(std::floor(point.x() / kColumn_m)),
                         static_cast<int>(std::floor(point.y() / kColumn_m))};
     const std::optional<float> ground_m = ground.at(column);
-    if (!ground_m || point.squaredNorm() > kFarthest_m * kFarthest_m) continue;
+    if (!ground_m || point.squaredNorm() > kRange_m * kRange_m) continue;
     const double height_m = point.z() - *ground_m;
     const double layer = std::floor(height_m / kColumn_m);
     if (!(layer >= 0.0 && layer < kPlaceLayers) || (!source.labelled && height_m < kGroundThickness_m)) continue;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/no_return.h"
 #include "localization/source_voxel_loops.h"
 #include "saw_ndt/common/error.h"
 
@@ -76,9 +77,7 @@ std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, s
   const auto read = [&](std::size_t place, std::size_t i) {
     const float* const point = first + i * stride;
     __builtin_prefetch(point + kPointsAhead * stride);
-    // Drivers write the origin for "no return".
-    const bool is_return = point[0] != 0.0F || point[1] != 0.0F || point[2] != 0.0F;
-    block.x[place] = is_return ? point[0] : std::numeric_limits<float>::quiet_NaN();
+    block.x[place] = isReturn(point) ? point[0] : std::numeric_limits<float>::quiet_NaN();
     block.y[place] = point[1];
     block.z[place] = point[2];
   };

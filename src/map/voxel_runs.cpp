@@ -202,7 +202,8 @@ std::size_t sumRuns(PointBlock& block) {
   const std::int32_t* HWY_RESTRICT all_steps = block.steps;
   const std::int32_t* HWY_RESTRICT all_same = block.same;
   Products<Most> products(0);
-  Products<Quadruple> rest(4);  // those that do not fit into vectors of 256 bits
+  Products<Quadruple> middle(2);  // those that do not fit into vectors of 128 bits
+  Products<Quadruple> rest(4);    // nor into those of 256 bits
   auto sum_count = hn::Zero(d);
   std::uint32_t run = ~0U;
   for (std::size_t i = 0; i < size; ++i) {
@@ -211,6 +212,7 @@ std::size_t sumRuns(PointBlock& block) {
     const std::int32_t* HWY_RESTRICT steps = all_steps + 4 * i;
     VoxelRun& sums = block.runs[run];
     products.add(steps, same, sums.product);
+    if constexpr (hn::MaxLanes(Most()) < 8) middle.add(steps, same, sums.product);
     if constexpr (hn::MaxLanes(Most()) < 16) rest.add(steps, same, sums.product);
     sum_count = hn::Add(hn::And(sum_count, hn::Set(d, same)), hn::Load(d, steps));
     hn::StoreU(sum_count, d, sums.sum_count);

@@ -12,7 +12,7 @@ struct PointPlacement {
   double inverse_resolution;  ///< 1/m
 };
 
-/// The `label` of points that are not finite or too far out for a voxel.
+/// The `label` of points that are no return, not finite or too far out for a voxel.
 constexpr std::int32_t kNoVoxel = -1;
 
 /// Sums of points that follow each other and share voxel and label.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/executor.h"
+#include "common/no_return.h"
 #include "map/voxel_runs.h"
 #include "map/voxel_sums_table.h"
 #include "saw_ndt/common/error.h"
@@ -45,6 +46,9 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
       for (std::size_t k = 0; k < block->size; ++k) {
         block->label[k] = labels.first[(i + k) * labels.stride];
       }
+    }
+    for (std::size_t k = 0; k < block->size; ++k) {
+      block->label[k] = isReturn(points.point(i + k)) ? block->label[k] : kNoVoxel;
     }
     const std::size_t run_count = findVoxelRuns(placement, *block);
     std::size_t point = 0;

@@ -3,6 +3,7 @@
 
 #include "registration/line_search.h"
 #include "registration/optimizers.h"
+#include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt::internal {
 
@@ -52,7 +53,8 @@ void newtonMoreThuente(const Evaluation& evaluate, const StepLimits& limits, dou
       result.status = AlignmentStatus::CONVERGED;
     }
   }
-  if (!pose.allFinite()) {
+  // A least step as long as the caller likes may lead anywhere.
+  if (!pose.allFinite() || pose.head<3>().cwiseAbs().maxCoeff() > kFarthest_m) {
     result.status = AlignmentStatus::UNDETERMINED;
     return;
   }

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "localization/synthetic_drive.h"
 #include "map/map_fixtures.h"
 #include "pose_argument.h"
 #include "real_data.h"
@@ -153,6 +154,76 @@ TEST_F(AlignApp, SaysWhatIsWrongAndWritesNothing) {
     EXPECT_EQ(result.output, "");
   }
   EXPECT_EQ(folder.entryCount(), 6U);
+}
+
+TEST_F(AlignApp, WhereNothingHoldsAPoseThereIsNone) {
+  SensorModel sensor = SensorModel::named("HDL-64E");
+  sensor.columns = 600;
+  const auto write = [&](const std::string& name, const std::vector<Block>& blocks, unsigned seed) {
+    Eigen::Isometry3d T_ground_lidar = Eigen::Isometry3d::Identity();
+    T_ground_lidar.translation() << -5.0, -2.0, 1.73;
+    pcl::PointCloud<pcl::PointXYZ> cloud;
+    for (const LidarPoint& point : scanBlocks(blocks, sensor, T_ground_lidar, seed)) {
+      cloud.push_back({point.x, point.y, point.z});
+    }
+    writePcd(folder.path() / name, cloud);
+  };
+  const std::vector<Block> yard = {{{10, -20, 0}, {11, 20, 4}},
+                                   {{-18, 12, 0}, {20, 13, 4}},
+                                   {{-3, -9, 0}, {1, -6, 2.5}},
+                                   {{4, 4, 0}, {6, 7, 2.5}},
+                                   {{-14, -4, 0}, {-12, 3, 3}}};
+  write("street.pcd", streetBlocks(), 1);
+  write("yard.pcd", yard, 2);
+  pcl::PointCloud<pcl::PointXYZ> three_points;
+  three_points.push_back({5.0F, 0.0F, -1.7F});
+  three_points.push_back({0.0F, 6.0F, -1.7F});
+  three_points.push_back({-4.0F, -3.0F, -1.7F});
+  writePcd(folder.path() / "three_points.pcd", three_points);
+  for (const std::string source : {"three_points.pcd", "yard.pcd"}) {
+    for (const std::string options : {"", "-source-voxel 0.2", "-optimizer newton-more-thuente -neighbors radius"}) {
+      SCOPED_TRACE(source + " " + options);
+      const AppResult result = run(quoted(source) + quoted("street.pcd") + quoted("out.pcd") + options);
+      EXPECT_EQ(result.exit_code, 1);
+      EXPECT_EQ(result.output, "");
+      EXPECT_NE(result.errors.find(source + ": could not be aligned to"), std::string::npos) << result.errors;
+      EXPECT_NE(result.errors.find("too few points fit the target"), std::string::npos) << result.errors;
+      EXPECT_FALSE(std::filesystem::exists(folder.path() / "out.pcd"));
+    }
+  }
+}
+
+TEST_F(AlignApp, CloudsFarFromTheOriginAreAlignedAsNearOnes) {
+  const Eigen::Vector3f origin(66000.0F, 43000.0F, 40.0F);
+  for (const std::string name : {"source", "target"}) {
+    auto cloud = readPointCloud<pcl::PointXYZL>(folder.path() / (name + ".pcd"));
+    for (pcl::PointXYZL& point : cloud) point.getVector3fMap() += origin;
+    writePcd(folder.path() / ("far_" + name + ".pcd"), cloud);
+  }
+  for (const std::string options : {"", "-source-voxel 0.2"}) {
+    SCOPED_TRACE(options);
+    const nlohmann::json near = jsonOf(quoted("source.pcd") + quoted("target.pcd") + options);
+    const nlohmann::json far = jsonOf(quoted("far_source.pcd") + quoted("far_target.pcd") + options);
+    const Eigen::Translation3d T_map_origin(origin.cast<double>());
+    // Coordinates are in steps of 8 mm there, and points have 2 cm of noise.
+    const Eigen::Isometry3d T_around_origin(T_map_origin.inverse() * transformIn(far) * T_map_origin);
+    expectNear(T_around_origin, transformIn(near), 0.01, 0.05);
+    // Rounding costs a step or two until none is longer than a millimetre.
+    EXPECT_LE(far.at("evaluations").get<int>(), near.at("evaluations").get<int>() + 4);
+  }
+}
+
+TEST_F(AlignApp, RealScansOfOtherPlacesAreNotAligned) {
+  if (realDataFolder().empty()) GTEST_SKIP() << "no real scans: set SAW_NDT_DATA to their folder";
+  const auto scanOf = [](const std::string& name, int scan) {
+    return "'" + KittiSequence(realDataFolder() / "kitti" / "sequences" / name).scanPath(scan).string() + "' ";
+  };
+  // Other drives, and the end of this one, which is 25 m away: too far without a guess.
+  for (const std::string& other : {scanOf("00", 0), scanOf("01", 0), scanOf("03", 0), scanOf("drive_0005", 69)}) {
+    const AppResult result = run(other + scanOf("drive_0005", 0) + "-source-voxel 0.2");
+    EXPECT_EQ(result.exit_code, 1) << other;
+    EXPECT_NE(result.errors.find("too few points fit the target"), std::string::npos) << result.errors;
+  }
 }
 
 TEST_F(AlignApp, RealScans) {

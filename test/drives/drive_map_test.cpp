@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "expect_throws.h"
+#include "localization/synthetic_drive.h"
 #include "map/map_fixtures.h"
 #include "real_data.h"
 #include "saw_ndt/common/error.h"
@@ -61,9 +62,37 @@ TEST_F(SequenceMap, CountsScansAndReportsThem) {
   EXPECT_GT(map.voxelCount(), 500U);
 }
 
+// Drivers write (0, 0, 0) where a beam met nothing. It is neither a voxel at the sensor nor a scan that met one, and
+// rings are found as without.
+TEST(SequenceMapOfSyntheticScans, PointsAtTheOriginOfTheLidarAreNoReturns) {
+  const SensorModel sensor = SensorModel::named("VLP-16");
+  SyntheticDrive drive = driveDownTheStreet(sensor, 2);
+  for (const bool segmented : {true, false}) {
+    DriveMapOptions options;
+    options.segmentation->sensor = sensor;
+    if (!segmented) options.segmentation.reset();
+    const auto bytes = [&] {
+      const TemporaryFolder folder;
+      writeKittiDrive(folder.path(), drive);
+      buildDriveMap(*KittiSequence(folder.path()).scans({0, 1}), options).build().save(folder.path() / "a.map");
+      return contentOf(folder.path() / "a.map");
+    };
+    const std::string expected = bytes();
+    const SyntheticDrive clean = drive;
+    for (std::vector<LidarPoint>& scan : drive.scans) {
+      for (std::size_t i = 0; i < scan.size(); i += 8) {
+        scan.insert(scan.begin() + static_cast<std::ptrdiff_t>(i), LidarPoint());
+      }
+    }
+    EXPECT_TRUE(bytes() == expected) << segmented;
+    drive = clean;
+  }
+}
+
 TEST(SequenceMapErrors, TheFirstBadScanIsNamed) {
   const TemporaryFolder folder;
-  const std::string four_points(64, '\0');
+  std::string four_points;
+  for (int point = 0; point < 4; ++point) four_points += "1234567890123456";  // finite numbers
   for (const int scan : {0, 1, 2, 3, 4}) {
     const bool bad = scan == 1 || scan == 3;
     folder.write("velodyne/00000" + std::to_string(scan) + ".bin", bad ? "short" : four_points);

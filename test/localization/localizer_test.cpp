@@ -333,11 +333,17 @@ TEST_F(LocalizerTest, WrongOptionsNameTheirField) {
   refused("T_base_lidar", [&](LocalizerOptions& o) { o.T_base_lidar.linear() *= -1.0; });
 }
 
-TEST_F(LocalizerTest, RefusesStampsAndInitialPosesThatAreNotFinite) {
+TEST_F(LocalizerTest, RefusesStampsThatAreNotFiniteAndInitialPosesThatAreNotRigid) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Localizer localizer = underWay(options);
   expectThrows<std::invalid_argument>([&] { localizer.localize(viewOf(scanOf(2)), nan); }, {"stamp_s"});
   expectThrows<std::invalid_argument>([&] { localizer.setInitialPose(planarPose(0.0, nan, 0.0)); }, {"T_map_base"});
+  Eigen::Isometry3d scaled = poseOf(2), mirrored = poseOf(2);
+  scaled.linear() *= 1.01;
+  mirrored.linear().col(1) *= -1.0;
+  for (const Eigen::Isometry3d& T : {scaled, mirrored}) {
+    expectThrows<std::invalid_argument>([&] { localizer.setInitialPose(T); }, {"T_map_base", "rigid"});
+  }
   EXPECT_TRUE(localizer.localize(viewOf(scanOf(2)), 0.2).accepted());
 }
 

@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <memory>
+#include <numeric>
 #include <string>
 
 #include "real_data.h"
@@ -116,6 +117,32 @@ TEST_F(RealDrives, AcceptanceDoesNotDependOnTheSizeOfVoxels) {
       // 2 m voxels are twice as coarse as the paper's.
       expectWithin(drive.errorsOf(method, "1:70:6"), {0.010, 0.020, 0.010});
     }
+  }
+}
+
+// 12.6 degrees between two scans, a second apart: the limits of a correction grow with that time.
+TEST_F(RealDrives, ATurnOnTheSpotInFewScansIsFollowed) {
+  const std::filesystem::path folder = realDataFolder() / "sensors" / "sequences" / "mid360_turning";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no sequence mid360_turning in SAW_NDT_DATA";
+  const KittiSequence sequence(folder);
+  ASSERT_EQ(sequence.scanCount(), 11);
+  std::vector<int> every_scan(11);
+  std::iota(every_scan.begin(), every_scan.end(), 0);
+  DriveMapOptions map_options;
+  map_options.segmentation.reset();  // the sensor has no rings
+  LocalizerOptions options;
+  options.method = LocalizationMethod::named("classical");
+  Localizer localizer(buildDriveMap(*sequence.scans(every_scan), map_options).build(), options);
+  localizer.setInitialPose(sequence.posesLidar().front());
+  const DriveLocalization run = localizeDrive(localizer, *sequence.scans(every_scan));
+  for (std::size_t scan = 0; scan < run.results.size(); ++scan) {
+    SCOPED_TRACE(scan);
+    const LocalizationResult& result = run.results[scan];
+    EXPECT_TRUE(result.accepted()) << toString(result.acceptance);
+    // The reference is that of a SLAM: the first scan lies 3 cm beside the map of all, the others 1 cm.
+    const Eigen::Isometry3d error = sequence.posesLidar()[scan].inverse() * result.T_map_base;
+    EXPECT_LT(error.translation().norm(), scan == 0 ? 0.04 : 0.02);
+    EXPECT_LT(degreesFromRadians(rotationAngle(error.linear())), 0.3);
   }
 }
 

@@ -228,7 +228,8 @@ TEST(SourceVoxelFilter, EveryInstructionSetGivesTheSameBits) {
   selection.T_base_lidar.rotate(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()));
   SourceVoxelFilter filter(0.2);
   const SourcePoints expected = filtered(filter, points, selection);
-  for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+  for (const InstructionSet set :
+       {InstructionSet::BASELINE, InstructionSet::SSE4, InstructionSet::AVX2, InstructionSet::AVX512}) {
     limitInstructionSet(set);
     EXPECT_TRUE(sameBits(filtered(filter, points, selection), expected)) << toString(set);
   }

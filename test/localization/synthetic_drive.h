@@ -35,9 +35,9 @@ inline std::vector<Block> streetBlocks() {
   return blocks;
 }
 
-/// Distance (m) along a ray to the ground or the nearest block; infinity where it meets neither.
-inline double rangeInStreet(const std::vector<Block>& blocks, const Eigen::Vector3d& origin,
-                            const Eigen::Vector3d& direction) {
+/// Distance (m) along a ray to the ground at z = 0 or the nearest block; infinity where it meets neither.
+inline double rangeAmong(const std::vector<Block>& blocks, const Eigen::Vector3d& origin,
+                         const Eigen::Vector3d& direction) {
   double nearest = direction.z() < 0.0 ? -origin.z() / direction.z() : std::numeric_limits<double>::infinity();
   const Eigen::Array3d inverse = direction.array().inverse();
   for (const Block& block : blocks) {
@@ -48,11 +48,10 @@ inline double rangeInStreet(const std::vector<Block>& blocks, const Eigen::Vecto
   return nearest;
 }
 
-/// The scan of a spinning LiDAR in the street: ring after ring from the top, azimuth rising, 1 cm of noise along the
-/// ray, nothing beyond 70 m.
-inline std::vector<LidarPoint> scanStreet(const SensorModel& sensor, const Eigen::Isometry3d& T_street_lidar,
-                                          unsigned seed) {
-  const std::vector<Block> blocks = streetBlocks();
+/// The scan of a spinning LiDAR on the ground among blocks: ring after ring from the top, azimuth rising, 1 cm of noise
+/// along the ray, nothing beyond 70 m.
+inline std::vector<LidarPoint> scanBlocks(const std::vector<Block>& blocks, const SensorModel& sensor,
+                                          const Eigen::Isometry3d& T_ground_lidar, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 0.01);
   std::vector<LidarPoint> scan;
@@ -63,7 +62,7 @@ inline std::vector<LidarPoint> scanStreet(const SensorModel& sensor, const Eigen
       const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                       std::sin(elevation));
       const double range =
-          rangeInStreet(blocks, T_street_lidar.translation(), T_street_lidar.linear() * direction) + noise(random);
+          rangeAmong(blocks, T_ground_lidar.translation(), T_ground_lidar.linear() * direction) + noise(random);
       if (!(range < 70.0)) continue;
       LidarPoint point;
       positionOf(point) = (direction * range).cast<float>();
@@ -74,13 +73,14 @@ inline std::vector<LidarPoint> scanStreet(const SensorModel& sensor, const Eigen
   return scan;
 }
 
-/// A drive down the street on a circle of 50 m radius, 5 m/s and ten scans a second.
+/// A drive and its scans.
 struct SyntheticDrive {
   std::vector<double> stamps_s;
   std::vector<Eigen::Isometry3d> T_map_lidar;  ///< the map is the frame of the first scan
   std::vector<std::vector<LidarPoint>> scans;
 };
 
+/// A drive down the street on a circle of 50 m radius, 5 m/s and ten scans a second.
 inline SyntheticDrive driveDownTheStreet(const SensorModel& sensor, int scan_count) {
   constexpr double kRadius_m = 50.0, kSpeed_mps = 5.0, kSensorHeight_m = 1.73;
   const auto pose = [&](double stamp_s) {
@@ -90,11 +90,12 @@ inline SyntheticDrive driveDownTheStreet(const SensorModel& sensor, int scan_cou
     T.linear() = rotationFromVector({0.0, 0.0, yaw});
     return T;
   };
+  const std::vector<Block> street = streetBlocks();
   SyntheticDrive drive;
   for (int i = 0; i < scan_count; ++i) {
     drive.stamps_s.push_back(0.1 * i);
     drive.T_map_lidar.push_back(pose(0.0).inverse() * pose(0.1 * i));
-    drive.scans.push_back(scanStreet(sensor, pose(0.1 * i), static_cast<unsigned>(i)));
+    drive.scans.push_back(scanBlocks(street, sensor, pose(0.1 * i), static_cast<unsigned>(i)));
   }
   return drive;
 }

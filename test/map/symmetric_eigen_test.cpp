@@ -120,7 +120,8 @@ TEST_P(SymmetricEigen, IsTheSameForEveryInstructionSet) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryInstructionSet, SymmetricEigen,
-                         testing::Values(InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512),
+                         testing::Values(InstructionSet::BASELINE, InstructionSet::SSE4, InstructionSet::AVX2,
+                                         InstructionSet::AVX512),
                          [](const auto& set) { return toString(set.param); });
 
 }  // namespace

@@ -47,7 +47,8 @@ template <typename PointT>
 void expectPlainSums(const pcl::PointCloud<PointT>& cloud, const Eigen::Isometry3d& T_map_cloud,
                      double resolution_m = 1.0) {
   const PlainSums expected = pointByPoint(cloud, T_map_cloud, resolution_m);
-  for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+  for (const InstructionSet set :
+       {InstructionSet::BASELINE, InstructionSet::SSE4, InstructionSet::AVX2, InstructionSet::AVX512}) {
     limitInstructionSet(set);
     for (const int threads : {1, 2, 3}) {
       WeightedMapBuilder builder(resolution_m);
@@ -159,7 +160,8 @@ TEST(VoxelRuns, LevelsDoNotDependOnThreadsOrInstructionSet) {
   const WeightedVoxelMap map = builder.build();
   ASSERT_GT(map.entries().size(), 4000U);
   const NdtTarget expected(map, {}, 1, CellPrecision::SINGLE_AND_DOUBLE);
-  for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+  for (const InstructionSet set :
+       {InstructionSet::BASELINE, InstructionSet::SSE4, InstructionSet::AVX2, InstructionSet::AVX512}) {
     limitInstructionSet(set);
     for (const int threads : {1, 2, 3, 0}) {
       expectEqualTargets(NdtTarget(map, {}, threads, CellPrecision::SINGLE_AND_DOUBLE), expected);

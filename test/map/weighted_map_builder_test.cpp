@@ -137,6 +137,30 @@ TEST(WeightedMapBuilder, CountsWhatItWasGiven) {
   EXPECT_EQ(summed, 97U);
 }
 
+TEST(WeightedMapBuilder, PointsAtTheOriginOfAScanAreNoReturns) {
+  std::vector<Scan> scans = drive();
+  const std::string expected = savedBytes(builderOf(scans).build());
+  pcl::PointXYZL no_return;
+  no_return.label = 2;
+  for (Scan& scan : scans) {
+    for (auto at = scan.cloud.begin(); scan.cloud.end() - at > 7; at += 7) at = scan.cloud.insert(at, no_return);
+  }
+  EXPECT_TRUE(savedBytes(builderOf(scans).build()) == expected);
+
+  // The origin of the map is a place as any other.
+  LabelledCloud ahead;
+  for (int i = 0; i < 10; ++i) {
+    pcl::PointXYZL point;
+    point.x = 5.0F;
+    ahead.push_back(point);
+  }
+  Eigen::Isometry3d T_map_cloud = Eigen::Isometry3d::Identity();
+  T_map_cloud.translation().x() = -5.0;
+  WeightedMapBuilder builder(0.8);
+  addCloud(builder, ahead, T_map_cloud);
+  EXPECT_EQ(builder.origin().point_count, 10U);
+}
+
 TEST(WeightedMapBuilder, MemoryGrowsWithVoxelsNotWithPoints) {
   const Scan scan{mixedCloud(1, 3000), poseOf(1)};
   WeightedMapBuilder builder(1.0);

@@ -170,6 +170,75 @@ TEST(WeightedNdt, AFarPointNeitherOverflowsNorDisturbs) {
   EXPECT_EQ(clean.getFinalTransformation(), far.getFinalTransformation());
 }
 
+TEST(WeightedNdt, AFarPointOfTheSourceIsPassedOverByBothOptimizers) {
+  const auto clean = plain(streetCorner(2, 500));
+  auto spoilt = pcl::make_shared<Plain>(*clean);
+  spoilt->push_back({1e38f, 0.0f, 0.0f});
+  spoilt->push_back({0.0f, -1e38f, 1e38f});
+  Ndt ndt;
+  ndt.setInputTarget(plain(streetCorner(1)));
+  Plain output;
+  for (const Optimizer optimizer : {Optimizer::DAMPED_NEWTON, Optimizer::NEWTON_MORE_THUENTE}) {
+    ndt.setOptimizer(optimizer);
+    ndt.setTransformationEpsilon(1e-6);  // PCL's optimizer takes it as squared metres
+    ndt.setMaximumIterations(100);
+    ndt.setInputSource(clean);
+    ndt.align(output, guessOf(1));
+    const Eigen::Matrix4f expected = ndt.getFinalTransformation();
+    EXPECT_LT(offIdentity(expected), 5e-3);
+    ndt.setInputSource(spoilt);
+    ndt.align(output, guessOf(1));
+    EXPECT_TRUE(ndt.hasConverged());
+    EXPECT_EQ(ndt.getFinalTransformation(), expected);
+    EXPECT_GT(ndt.getAlignmentResult().overlap, 0.8);
+  }
+}
+
+// Half of the epsilon is the least step of PCL's line search, however far that leads.
+TEST(WeightedNdt, HugeEpsilonsOfPclsOptimizerDoNotConvergeAndStayFinite) {
+  Ndt ndt;
+  ndt.setInputTarget(plain(streetCorner(1)));
+  ndt.setInputSource(plain(streetCorner(2, 500)));
+  ndt.setOptimizer(Optimizer::NEWTON_MORE_THUENTE);
+  Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
+  guess(0, 3) = 3.0f;
+  guess(1, 3) = 2.0f;
+  Plain output;
+  for (const double epsilon : {1e3, 1e6, 1e12, 1e30, 1e300}) {
+    for (const double step_size : {0.1, 1e3, 1e300}) {
+      ndt.setTransformationEpsilon(epsilon);
+      ndt.setStepSize(step_size);
+      ndt.align(output, guess);
+      EXPECT_FALSE(ndt.hasConverged());
+      EXPECT_TRUE(ndt.getFinalTransformation().allFinite());
+      for (const auto& point : output) ASSERT_TRUE(pcl::isFinite(point));
+    }
+  }
+}
+
+TEST(WeightedNdt, ACopyHasItsOwnKdTree) {
+  const auto source = plain(streetCorner(2, 500));
+  Ndt original;
+  original.setInputTarget(plain(streetCorner(1)));
+  original.setInputSource(source);
+  Plain output;
+  original.align(output, guessOf(1));
+  const double fitness = original.getFitnessScore();
+  Ndt constructed(original), assigned;
+  assigned = original;
+  auto elsewhere = pcl::make_shared<Plain>();
+  for (const auto& point : streetCorner(1)) elsewhere->push_back({point.x + 50.0f, point.y, point.z});
+  for (Ndt* copy : {&constructed, &assigned}) {
+    EXPECT_NE(copy->getSearchMethodTarget(), original.getSearchMethodTarget());
+    EXPECT_EQ(copy->getFinalTransformation(), original.getFinalTransformation());
+    EXPECT_EQ(copy->getFitnessScore(), fitness);
+    copy->setInputTarget(elsewhere);
+    copy->align(output, guessOf(1));
+    EXPECT_GT(copy->getFitnessScore(), 1000.0);  // the corner is 12 m wide, and 50 m away
+    EXPECT_EQ(original.getFitnessScore(), fitness);
+  }
+}
+
 TEST(WeightedNdt, ResolutionAndMinPointsTakeEffectInAnyOrder) {
   const auto target = plain(streetCorner(1));
   Ndt before, after;

@@ -161,7 +161,8 @@ TEST_P(BothRules, LabelsDependOnNeitherThreadsNorInstructionSet) {
     const std::vector<StructuralLabel> expected_pixels = segmenter.stages().pixel_labels;
     const std::vector<std::int32_t> expected_pixel_of_point = segmenter.stages().image.pixelOfPoint();
     EXPECT_EQ(expected.size(), scan->size());
-    for (const InstructionSet set : {InstructionSet::BASELINE, InstructionSet::AVX2, InstructionSet::AVX512}) {
+    for (const InstructionSet set :
+         {InstructionSet::BASELINE, InstructionSet::SSE4, InstructionSet::AVX2, InstructionSet::AVX512}) {
       limitInstructionSet(set);
       for (const int threads : {1, 2, 3, 7, 40}) {
         std::vector<StructuralLabel> labels;

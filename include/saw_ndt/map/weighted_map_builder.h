@@ -30,8 +30,9 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   WeightedMapBuilder& operator=(const WeightedMapBuilder& other);
   WeightedMapBuilder& operator=(WeightedMapBuilder&& other) noexcept;
 
-  /// Adds the finite points of a scan. With labels the points count under them, without any the map becomes an
-  /// unlabelled one; scans of the two kinds do not mix. addCloud() of pcl/cloud_view.h adds clouds of PCL.
+  /// Adds the points of a scan that are finite and not (0, 0, 0), which drivers write for no return. With labels the
+  /// points count under them, without any the map becomes an unlabelled one; scans of the two kinds do not mix.
+  /// addCloud() of pcl/cloud_view.h adds clouds of PCL.
   /// @param labels      of each point of the scan, values of StructuralLabel
   /// @param T_map_scan  pose of the scan's frame in the map frame
   /// @param threads     0: all cores; the result does not depend on it

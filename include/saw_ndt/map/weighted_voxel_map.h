@@ -17,7 +17,7 @@ struct SAW_NDT_EXPORT MapOrigin {
   double resolution_m = 1.0;
   bool labelled = false;          ///< whether the points carried structural labels
   std::uint64_t scan_count = 0;   ///< clouds added
-  std::uint64_t point_count = 0;  ///< finite points added, over all labels
+  std::uint64_t point_count = 0;  ///< that have a voxel, over all labels
   /// How the labels were made; nothing where there are none or that is not known.
   std::optional<SegmentationOptions> segmentation;
   /// Version of this library that added the points, without line breaks; empty where it is not known.

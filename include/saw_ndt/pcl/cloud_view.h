@@ -82,7 +82,8 @@ LabelView labelsOf(const pcl::PointCloud<PointT>& cloud) {
   return labels;
 }
 
-/// Adds the finite points of a cloud to a map, under the labels of their `label` field where they have one.
+/// Adds the points of a cloud to a map that WeightedMapBuilder::addScan() adds, under the labels of their `label` field
+/// where they have one.
 /// @param T_map_cloud  pose of the cloud's frame in the map frame
 /// @throws std::invalid_argument as labelsOf() and WeightedMapBuilder::addScan()
 template <typename PointT>

@@ -26,7 +26,8 @@ namespace saw_ndt {
 ///  - DAMPED_NEWTON reads the translation epsilon in metres and the rotation epsilon as a cosine, and stops at the
 ///    smaller of it and 1 mm, or 0.05 mrad: PCL's default of 0.1 would stop it centimetres short.
 ///    NEWTON_MORE_THUENTE reads them as PCL does: squared metres and a cosine, an epsilon <= 0 switched off;
-///  - setIndices() is honoured; points that are not finite, or 1e9 m away, are passed over, in source and target;
+///  - setIndices() is honoured; points that are not finite, or 1e9 m away, are passed over, in source and target, and
+///    in a target those at (0, 0, 0), which are no returns;
 ///  - setResolution() and setMinPointPerVoxel() take effect at once, in whatever order calls come;
 ///  - an empty target or source replaces the one before it; aligning then fails instead of using the old one;
 ///  - the target may lie anywhere: no bound on the extent of its voxel grid;

@@ -9,10 +9,11 @@
 
 namespace saw_ndt {
 
-/// Whether a point can be registered: finite, and no farther than 1e9 m away along any axis. What is farther is no
-/// measurement, and its square overflows single precision.
+/// What is farther away along any axis (m) is no measurement, and its square overflows single precision.
+constexpr float kFarthest_m = 1.0e9F;
+
+/// Whether a point can be registered: finite, and no farther away than kFarthest_m.
 inline bool isWithinReach(float x, float y, float z) {
-  constexpr float kFarthest_m = 1.0e9F;
   return std::abs(x) <= kFarthest_m && std::abs(y) <= kFarthest_m && std::abs(z) <= kFarthest_m;
 }
 

@@ -51,7 +51,7 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::cop
   aligner_ = other.aligner_;
   result_ = other.result_;
   this->tree_.reset(new LazyKdTree<PointTarget>());
-  this->target_cloud_updated_ = true;
+  if (this->target_) this->tree_->setInputCloud(this->target_);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "localization/synthetic_drive.h"
+#include "saw_ndt/drives/scan_source.h"
+
+namespace saw_ndt {
+
+/// The scans of a synthetic drive as a source, without files.
+class ScansInMemory : public ScanSource {
+ public:
+  explicit ScansInMemory(SyntheticDrive drive) : drive_(std::move(drive)) {}
+
+  bool next(RecordedScan& scan) override {
+    if (next_ == drive_.scans.size()) return false;
+    scan.number = static_cast<int>(next_);
+    scan.name = std::to_string(next_);
+    scan.stamp_s = drive_.stamps_s[next_];
+    scan.points = drive_.scans[next_];
+    scan.T_map_lidar = drive_.T_map_lidar[next_];
+    scan.failure.clear();
+    ++next_;
+    return true;
+  }
+  std::optional<std::size_t> scanCount() const override { return drive_.scans.size(); }
+
+ private:
+  SyntheticDrive drive_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace saw_ndt
