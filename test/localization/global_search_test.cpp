@@ -32,7 +32,7 @@ WeightedVoxelMap streetMap(bool segment, const std::vector<Eigen::Vector3d>& cop
   ScanSegmenter segmenter{SegmentationOptions()};
   unsigned seed = 1000;
   for (const double x : {-20.0, -10.0, 0.0, 10.0, 20.0, 30.0}) {
-    const std::vector<LidarPoint> scan = scanStreet(sensor(), streetPose(x, 1.0, 0.0), ++seed);
+    const std::vector<LidarPoint> scan = scanBlocks(streetBlocks(), sensor(), streetPose(x, 1.0, 0.0), ++seed);
     std::vector<StructuralLabel> labels;
     if (segment) segmenter.segment(viewOf(scan), labels);
     for (const Eigen::Vector3d& copy_at : copies_at) {
@@ -68,7 +68,7 @@ class StreetScans {
  public:
   explicit StreetScans(bool segment) : preparation_(optionsFor(segment)) {}
   const SourcePoints& at(const Eigen::Isometry3d& T_street_lidar, unsigned seed) {
-    scan_ = scanStreet(sensor(), T_street_lidar, seed);
+    scan_ = scanBlocks(streetBlocks(), sensor(), T_street_lidar, seed);
     return preparation_.prepare(viewOf(scan_));
   }
 
@@ -165,7 +165,7 @@ TEST(LocalizerSearch, AStartWithoutAPoseIsFound) {
       localizer.setUnknownPose();
       EXPECT_EQ(localizer.track().status, TrackStatus::LOST);
       EXPECT_FALSE(localizer.track().pose_known);
-      const std::vector<LidarPoint> scan = scanStreet(sensor(), T_map_lidar, seed++);
+      const std::vector<LidarPoint> scan = scanBlocks(streetBlocks(), sensor(), T_map_lidar, seed++);
       const LocalizationResult result = localizer.localize(viewOf(scan), 0.0);
       ASSERT_TRUE(result.accepted()) << toString(result.acceptance) << T_map_lidar.matrix();
       EXPECT_EQ(result.search, SearchExtent::EVERYWHERE);
@@ -180,7 +180,7 @@ TEST(LocalizerSearch, PlacesThatLookAlikeAreNotTakenForEachOther) {
   const Eigen::Vector3d copy_at(256.0, 0.0, 0.0);
   const LocalizerOptions options = optionsOf("weighted");
   Localizer localizer(streetMap(true, {Eigen::Vector3d::Zero(), copy_at}), options);
-  const std::vector<LidarPoint> scan = scanStreet(sensor(), testPoses()[1], 40);
+  const std::vector<LidarPoint> scan = scanBlocks(streetBlocks(), sensor(), testPoses()[1], 40);
   localizer.setUnknownPose();
   LocalizationResult result = localizer.localize(viewOf(scan), 0.0);
   EXPECT_EQ(result.acceptance, Acceptance::AMBIGUOUS);
@@ -205,8 +205,8 @@ TEST(LocalizerSearch, PlacesThatLookAlikeAreNotTakenForEachOther) {
 TEST(LocalizerSearch, ACarriedVehicleIsFoundOnceItIsLost) {
   const LocalizerOptions options = optionsOf("weighted");
   Localizer localizer(streetMap(true), options);
-  const std::vector<LidarPoint> before = scanStreet(sensor(), testPoses()[0], 50);
-  const std::vector<LidarPoint> after = scanStreet(sensor(), testPoses()[3], 51);
+  const std::vector<LidarPoint> before = scanBlocks(streetBlocks(), sensor(), testPoses()[0], 50);
+  const std::vector<LidarPoint> after = scanBlocks(streetBlocks(), sensor(), testPoses()[3], 51);
   localizer.setInitialPose(testPoses()[0]);
   for (const double stamp_s : {0.0, 0.1, 0.2}) ASSERT_TRUE(localizer.localize(viewOf(before), stamp_s).accepted());
   LocalizationResult result;
@@ -240,7 +240,7 @@ TEST(LocalizerSearch, OutliersOfAMeasuredPositionMoveNothing) {
   for (Localizer* const localizer : {&with, &without}) localizer->setInitialPose(streetPose(-5.0, 0.0, 0.0));
   for (int i = 0; i < 6; ++i) {
     const Eigen::Isometry3d T_map_lidar = streetPose(-5.0 + 0.8 * i, 0.0, 0.0);
-    const std::vector<LidarPoint> scan = scanStreet(sensor(), T_map_lidar, seed++);
+    const std::vector<LidarPoint> scan = scanBlocks(streetBlocks(), sensor(), T_map_lidar, seed++);
     ScanPriors priors;
     priors.position.emplace();
     priors.position->position_m = T_map_lidar.translation() + Eigen::Vector3d(i == 3 ? 30.0 : 2.0, -1.5, 1.0);

@@ -48,6 +48,7 @@ inline BenchmarkRun handMadeRun(const std::string& sequence, MapDrive drive, int
       result.stamp_s = stamps_s[i];
       result.T_map_base = run.T_map_base[i];
       result.T_map_base.translation().y() += method.error_m;
+      result.track.pose_known = true;
       result.acceptance = scan < scan_count - method.rejected_scans ? Acceptance::ACCEPTED : Acceptance::LOW_LIKELIHOOD;
       result.alignment.likelihoods.unweighted = result.accepted() ? 2.0 : 0.5;
       result.source_points = 1000;
