@@ -165,6 +165,7 @@ PoseAttempt Localizer::searchEverywhere(const SourcePoints& source, double stamp
   MeasuredPose pose{found.T_map_base, found.alignment.covariance, found.alignment.free_directions};
   pose.overlap = found.alignment.overlap;
   prediction_.restart(pose, found_stamp_s);
+  prediction_.move(std::nullopt);  // the motion since then is not at hand
   return none;
 }
 
@@ -241,8 +242,10 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
     result.T_map_base = accepted.T_map_base;
     result.covariance = accepted.covariance;
   } else {
-    result.T_map_base = result.T_map_base_predicted;
-    result.covariance = predicted.covariance;
+    // That before, unless a search has just told where the vehicle was.
+    const UncertainPose expected = predictedPose(stamp_s, priors.position, without_track);
+    result.T_map_base = expected.T_map_base;
+    result.covariance = expected.covariance;
     prediction_.reject(stamp_s);
   }
   result.track = prediction_.state();

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "expect_throws.h"
@@ -220,6 +222,38 @@ TEST(LocalizerSearch, ACarriedVehicleIsFoundOnceItIsLost) {
   EXPECT_LE(rejected, options.prediction.lost_after_scans);
   EXPECT_EQ(result.search, SearchExtent::EVERYWHERE);
   EXPECT_TRUE(isAt(result.T_map_base, testPoses()[3], 0.03, 0.1));
+}
+
+TEST(LocalizerSearch, ASearchGoesOnBesideTheScansThatItsBudgetIsTooShortFor) {
+  LocalizerOptions options = optionsOf("weighted");
+  options.search_budget_ms = 1e-3;
+  Localizer localizer(streetMap(true), options);
+  localizer.setUnknownPose();
+  const Eigen::Isometry3d T_map_lidar = testPoses()[2];
+  const std::vector<LidarPoint> scan = scanBlocks(streetBlocks(), sensor(), T_map_lidar, 52);
+  LocalizationResult result = localizer.localize(viewOf(scan), 0.0);
+  EXPECT_FALSE(result.accepted());
+  EXPECT_FALSE(result.track.pose_known);
+  EXPECT_EQ(result.search, SearchExtent::EVERYWHERE);
+  int scans = 1;
+  for (; !result.accepted() && scans < 1000; ++scans) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    result = localizer.localize(viewOf(scan), 1e-3 * scans);
+    EXPECT_TRUE(result.T_map_base.matrix().allFinite());
+    if (!result.accepted() && result.track.pose_known) {
+      // Found, but at an earlier scan: the next one is aligned from there.
+      EXPECT_EQ(result.track.status, TrackStatus::COASTING);
+      EXPECT_TRUE(isAt(result.T_map_base, T_map_lidar, 0.03, 0.1));
+    }
+  }
+  ASSERT_TRUE(result.accepted()) << toString(result.acceptance);
+  EXPECT_GT(scans, 2);
+  EXPECT_TRUE(isAt(result.T_map_base, T_map_lidar, 0.03, 0.1));
+  // A search whose vehicle has been found otherwise is of no account.
+  localizer.setUnknownPose();
+  localizer.localize(viewOf(scan), 2.0);
+  localizer.setInitialPose(T_map_lidar);
+  EXPECT_TRUE(localizer.localize(viewOf(scan), 2.1).accepted());
 }
 
 TEST(LocalizerSearch, WithoutSearchALostVehicleStaysLost) {
