@@ -150,7 +150,7 @@ int main(int argc, char** argv) {
     bool was_lost = false;
     std::size_t done = 0;
     const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *source, [&] {
-      const bool is_lost = localizer.track().status == saw_ndt::TrackStatus::LOST;
+      const bool is_lost = localizer.track().isLost();
       if (is_lost && !was_lost) std::cerr << app.name() << ": lost at scan " << selected[done] << '\n';
       was_lost = is_lost;
       ++done;

@@ -59,7 +59,7 @@ std::string inWords(int scan, const LocalizationResult& result, const PoseDiffer
 
 }  // namespace
 
-bool isLost(const LocalizationResult& result) { return result.track.status == TrackStatus::LOST; }
+bool isLost(const LocalizationResult& result) { return result.track.isLost(); }
 
 bool misleads(const PoseDifference& difference, const Matrix6d& covariance, const PoseDirections& free_directions) {
   if (isRight(difference)) return false;

@@ -175,7 +175,7 @@ UncertainPose Localizer::predictedPose(double stamp_s, const std::optional<Measu
   UncertainPose predicted{prediction_.predict(stamp_s), prediction_.predictedCovariance(stamp_s)};
   if (!position) return predicted;
   if (const auto corrected = correctedBy(*position, predicted)) return *corrected;
-  if (prediction_.state().status != TrackStatus::LOST) return predicted;
+  if (!prediction_.state().isLost()) return predicted;
   without_track = true;
   return correctedBy(*position, {predicted.T_map_base, anywhereCovariance()}).value_or(predicted);
 }
@@ -222,9 +222,10 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
         find(source, {prediction_.predict(stamp_s), prediction_.predictedCovariance(stamp_s)}, stamp_s);
     if (other.accepted()) found = other;
   }
-  const bool is_lost = prediction_.state().status == TrackStatus::LOST || !PoseFinder::isInReach(predicted.covariance);
+  const bool is_lost = prediction_.state().isLost() || !PoseFinder::isInReach(predicted.covariance);
   if (is_lost && finder_->isWorthSearching(found, prediction_.state())) {
     const PoseAttempt other = searchEverywhere(source, stamp_s, total.milliseconds());
+    found.search = other.search;
     if (other.accepted() || without_track) found = other;
   } else if (ongoing_search_) {
     ongoing_search_->outdated = true;
@@ -246,7 +247,7 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
     const UncertainPose expected = predictedPose(stamp_s, priors.position, without_track);
     result.T_map_base = expected.T_map_base;
     result.covariance = expected.covariance;
-    prediction_.reject(stamp_s);
+    prediction_.reject(stamp_s, found.search == SearchExtent::EVERYWHERE);
   }
   result.track = prediction_.state();
   result.times.total_ms = total.milliseconds();

@@ -62,6 +62,8 @@ const char* toString(TrackStatus status) {
       return "tracking";
     case TrackStatus::COASTING:
       return "coasting";
+    case TrackStatus::RELOCALIZING:
+      return "relocalizing";
     case TrackStatus::LOST:
       return "lost";
   }
@@ -302,11 +304,11 @@ Matrix6d MotionPrediction::learnVelocity(const MeasuredPose& pose, double stamp_
   return gain;
 }
 
-void MotionPrediction::reject(double stamp_s) {
+void MotionPrediction::reject(double stamp_s, bool searched) {
   if (state_.status == TrackStatus::NOT_INITIALIZED) return;
   ++state_.rejected_scans;
   const bool is_lost = !state_.pose_known || state_.rejected_scans >= options_.lost_after_scans;
-  state_.status = is_lost ? TrackStatus::LOST : TrackStatus::COASTING;
+  state_.status = !is_lost ? TrackStatus::COASTING : searched ? TrackStatus::RELOCALIZING : TrackStatus::LOST;
   if (!std::isfinite(stamp_s)) return;
   if (!state_.stamp_s) {
     state_.stamp_s = stamp_s;

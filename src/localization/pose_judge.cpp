@@ -113,7 +113,7 @@ PoseExpectation PoseJudge::expect(const Eigen::Isometry3d& T_map_base_predicted,
   expectation.max_correction_deg =
       std::max({options_.max_correction_deg,
                 degreesFromRadians(std::max(max_turn_rate_radps * elapsed_s, kSigmas * sigma_rad))});
-  const bool anywhere = !track.stamp_s || track.status == TrackStatus::LOST;
+  const bool anywhere = !track.stamp_s || track.isLost();
   expectation.search_radius_m =
       std::clamp(kSigmas * sigma_m, anywhere ? kSigmas * kFreeSigma_m : kLeastSearchRadius_m, kGreatestSearchRadius_m);
   expectation.unsure = sigma_m > kUnsureSigma_m;

@@ -29,8 +29,10 @@ nlohmann::ordered_json toJson(const LocalizationSummary& summary) {
   json["scans"] = summary.scans;
   json["accepted"] = summary.accepted;
   json["rejected"] = summary.rejected;
-  json["states"] = {
-      {"tracking", toJson(summary.tracking)}, {"coasting", toJson(summary.coasting)}, {"lost", toJson(summary.lost)}};
+  json["states"] = {{"tracking", toJson(summary.tracking)},
+                    {"coasting", toJson(summary.coasting)},
+                    {"relocalizing", toJson(summary.relocalizing)},
+                    {"lost", toJson(summary.lost)}};
   json["recoveries"] = summary.recoveries;
   json["degenerate_scans"] = summary.degenerate_scans;
   json["total_ms"] = toJson(summary.total_ms);

@@ -78,9 +78,10 @@ void addStates(const DriveLocalization& run, LocalizationSummary& summary) {
   for (std::size_t i = 0; i < run.results.size(); ++i) {
     const LocalizationResult& result = run.results[i];
     const TrackStatus status = result.track.status;
-    StateShare& share = status == TrackStatus::LOST       ? summary.lost
-                        : status == TrackStatus::COASTING ? summary.coasting
-                                                          : summary.tracking;
+    StateShare& share = status == TrackStatus::LOST           ? summary.lost
+                        : status == TrackStatus::RELOCALIZING ? summary.relocalizing
+                        : status == TrackStatus::COASTING     ? summary.coasting
+                                                              : summary.tracking;
     ++share.scans;
     if (result.accepted() && result.free_directions.cols() > 0) ++summary.degenerate_scans;
     if (i == 0) continue;

@@ -24,7 +24,7 @@ struct StateShare {
 struct LocalizationSummary {
   std::string method;
   std::size_t scans = 0, accepted = 0, rejected = 0;
-  StateShare tracking, coasting, lost;
+  StateShare tracking, coasting, relocalizing, lost;
   std::size_t recoveries = 0;        ///< how often a scan was accepted after ones that were not
   std::size_t degenerate_scans = 0;  ///< accepted ones that do not hold the pose in every direction
   internal::DurationStatistics total_ms, segment_ms, filter_ms, align_ms;

@@ -161,6 +161,7 @@ TEST_F(LocalizeApp, AnUnknownStartIsFound) {
   // Nothing is known of scans before the first that is found: they have no pose.
   ASSERT_EQ(localize("-skip 0 -initial-pose unknown -min-likelihood 50").exit_code, 1);
   EXPECT_TRUE(contentOf(out / "trajectory_tum.txt").empty());
+  EXPECT_EQ(summary().at("states").at("relocalizing").at("scans"), 6);
   EXPECT_EQ(frames().size(), 7U);
 }
 

@@ -363,6 +363,10 @@ TEST(MotionPrediction, AnUnknownPoseIsLostUntilOneIsFound) {
   EXPECT_FALSE(prediction.state().pose_known);
   prediction.reject(1.0);
   EXPECT_EQ(prediction.state().status, TrackStatus::LOST);
+  EXPECT_TRUE(prediction.state().isLost());
+  prediction.reject(1.05, true);
+  EXPECT_EQ(prediction.state().status, TrackStatus::RELOCALIZING);
+  EXPECT_TRUE(prediction.state().isLost());
   EXPECT_GT(prediction.predictedCovariance(1.1)(0, 0), 1e9);
   MeasuredPose pose{onCircle(1.2)};
   pose.covariance.diagonal().setConstant(1e-6);

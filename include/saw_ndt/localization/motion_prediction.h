@@ -92,7 +92,8 @@ class SAW_NDT_EXPORT MotionPrediction {
   /// not fit what is known is passed over as an outlier. Returns the covariance of the pose.
   Matrix6d correct(const MeasuredPosition& position);
   /// A scan was rejected: nothing new is known. An initial pose is that of the first scan, rejected or not.
-  void reject(double stamp_s);
+  /// @param searched  the scan was looked for in all of the map
+  void reject(double stamp_s, bool searched = false);
 
   /// The pose expected at a stamp, which may be up to a second before the last.
   /// @throws std::invalid_argument for a stamp that is not finite, std::logic_error before reset() or accept()

@@ -13,10 +13,11 @@ enum class TrackStatus {
   NOT_INITIALIZED,  ///< no pose has been given yet
   TRACKING,         ///< the last scan was accepted, or an initial pose was given since
   COASTING,         ///< the last scans were rejected: poses are predictions
+  RELOCALIZING,     ///< lost, and the last scan was looked for in all of the map
   LOST,             ///< so many were that predictions are worth little; see MotionPredictionOptions::lost_after_scans
 };
 
-/// "not initialized", "tracking", "coasting", "lost"
+/// "not initialized", "tracking", "coasting", "relocalizing", "lost"
 SAW_NDT_EXPORT const char* toString(TrackStatus status);
 
 /// What a localizer knows of the vehicle between two scans.
@@ -33,6 +34,9 @@ struct TrackState {
   int rejected_scans = 0;                                          ///< since the last accepted one
   /// Mean of AlignmentResult::overlap over the last accepted scans, where any was.
   std::optional<double> usual_overlap;
+
+  /// Whether nobody knows where the vehicle is, looked for or not.
+  bool isLost() const { return status == TrackStatus::LOST || status == TrackStatus::RELOCALIZING; }
 
   /// Seconds from the last accepted pose to a stamp; nothing where its stamp is not known.
   std::optional<double> timeSinceLast(double at_stamp_s) const {
