@@ -149,19 +149,22 @@ void AppOptions::addOption(const std::string& name, std::string* value, const st
   add(name, placeholder, help, *value, [value](const std::string& text) { *value = text; });
 }
 
+std::vector<double> parseNumbers(const std::string& option, const std::string& text, std::size_t count) {
+  std::vector<double> numbers;
+  for (const std::string& part : splitAtCommas(text)) {
+    numbers.push_back(parseNumber<double>(option, part, "finite number"));
+  }
+  if (count != 0 && numbers.size() != count) {
+    throw UsageError("option -" + option + ": '" + text + "' has " + std::to_string(numbers.size()) +
+                     " numbers, where " + std::to_string(count) + " are needed");
+  }
+  return numbers;
+}
+
 void AppOptions::addOption(const std::string& name, std::vector<double>* value, const std::string& placeholder,
                            const std::string& help) {
-  add(name, placeholder, help, textOf(*value), [name, value, count = value->size()](const std::string& text) {
-    std::vector<double> numbers;
-    for (const std::string& part : splitAtCommas(text)) {
-      numbers.push_back(parseNumber<double>(name, part, "finite number"));
-    }
-    if (count != 0 && numbers.size() != count) {
-      throw UsageError("option -" + name + ": '" + text + "' has " + std::to_string(numbers.size()) +
-                       " numbers, where " + std::to_string(count) + " are needed");
-    }
-    *value = numbers;
-  });
+  add(name, placeholder, help, textOf(*value),
+      [name, value, count = value->size()](const std::string& text) { *value = parseNumbers(name, text, count); });
 }
 
 void AppOptions::addOption(const std::string& name, std::vector<std::string>* value, const std::string& placeholder,

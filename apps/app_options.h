@@ -90,6 +90,10 @@ class AppOptions {
   int threads_;
 };
 
+/// The numbers, separated by commas, of an option's text. @throws UsageError that names the option unless all are
+/// finite and there are `count` of them, or any number for 0
+std::vector<double> parseNumbers(const std::string& option, const std::string& text, std::size_t count);
+
 /// Parses the command line, does the work and returns the exit code: 0 done (or help printed), 1 the work threw, 2
 /// wrong usage. Errors are one line on stderr, "app: message".
 int runApp(int argc, const char* const* argv, AppOptions& app, const std::function<void()>& work);

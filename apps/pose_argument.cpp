@@ -1,9 +1,5 @@
 #include "pose_argument.h"
 
-#include <cmath>
-#include <sstream>
-
-#include "app_options.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt {
@@ -15,22 +11,6 @@ Eigen::Isometry3d transformOf(const std::vector<double>& xyz_rpy_deg) {
     values[i] = i < 3 ? value : radiansFromDegrees(value);
   }
   return transformFromXyzRpy(values);
-}
-
-Eigen::Isometry3d transformOf(const std::string& text, const std::string& option) {
-  std::vector<double> values;
-  std::istringstream stream(text);
-  bool all_numbers = true;
-  for (std::string word; std::getline(stream, word, ',');) {
-    std::istringstream number(word);
-    double value = 0.0;
-    all_numbers = all_numbers && number >> value && (number >> std::ws).eof() && std::isfinite(value);
-    values.push_back(value);
-  }
-  if (!all_numbers || values.size() != 6) {
-    throw UsageError("option " + option + ": '" + text + "' is not " + kPosePlaceholder);
-  }
-  return transformOf(values);
 }
 
 std::vector<double> poseArgumentOf(const Eigen::Isometry3d& T) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <string>
 #include <vector>
 
 namespace saw_ndt {
@@ -12,9 +11,6 @@ constexpr char kPosePlaceholder[] = "X,Y,Z,ROLL,PITCH,YAW";
 /// The transform that a pose on the command line states: x y z in metres, roll pitch yaw in degrees,
 /// R = Rz(yaw) Ry(pitch) Rx(roll).
 Eigen::Isometry3d transformOf(const std::vector<double>& xyz_rpy_deg);
-
-/// The same of its text. @throws UsageError that names the option unless it has six finite numbers
-Eigen::Isometry3d transformOf(const std::string& text, const std::string& option);
 
 /// The inverse of transformOf().
 std::vector<double> poseArgumentOf(const Eigen::Isometry3d& T);

@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
     }
     std::optional<Eigen::Isometry3d> T_map_base_initial;
     if (!initial_pose.empty() && initial_pose != kUnknown) {
-      T_map_base_initial = saw_ndt::transformOf(initial_pose, "-initial-pose");
+      T_map_base_initial = saw_ndt::transformOf(saw_ndt::parseNumbers("initial-pose", initial_pose, 6));
     }
     const saw_ndt::KittiSequence sequence(sequence_folder, poses_file);
     const std::vector<int> selected =
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
       if (!failure.empty()) std::cerr << app.name() << ": " << failure << ": rejected\n";
     }
     const saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
-    if (sequence.hasPoses() && !summary.metrics) {
+    if (sequence.hasPoses() && !summary.metrics && summary.accepted > 0) {
       std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
     }
     saw_ndt::writeLocalization(folder.path(), run, summary, options.T_base_lidar, T_camera_lidar);

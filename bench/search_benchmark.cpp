@@ -4,6 +4,7 @@
 #include <map>
 
 #include "app_options.h"
+#include "common/stopwatch.h"
 #include "evaluation/statistics.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
@@ -15,7 +16,8 @@
 namespace {
 
 constexpr char kDescription[] =
-    "Localizes scans of SEQUENCE in MAP, each by itself, with no pose to start from, and prints a line of a table: how "
+    "Localizes scans of SEQUENCE in MAP, each by itself, with no pose to start from, and prints what the index takes "
+    "and a line of a table: how "
     "many were found, how many were accepted wrongly (off by more than 0.5 m or 2 degrees), why the others were "
     "rejected, and the time from the scan to the answer. With -copy-at the map is there twice: then no scan tells "
     "where it was taken, and none must be accepted.";
@@ -62,6 +64,10 @@ int main(int argc, char** argv) {
         app.isGiven("copy-at") ? saw_ndt::NdtTarget(withCopy(saw_ndt::WeightedVoxelMap::load(map_file), copy_offset_m),
                                                     options.method.voxels, app.threads())
                                : saw_ndt::NdtTarget::load(map_file, options.method.voxels, app.threads());
+    const saw_ndt::internal::Stopwatch stopwatch;
+    const saw_ndt::GlobalSearch search(target);
+    std::cout << "The index takes " << static_cast<double>(search.memoryUsage()) / 1e6 << " MB, and "
+              << stopwatch.milliseconds() << " ms to make.\n\n";
     saw_ndt::Localizer localizer(target, options);
 
     std::size_t found = 0, wrong = 0;

@@ -146,7 +146,7 @@ class TileSearch {
     }
     std::vector<Place> places;
     for (const Place& place : best_) {
-      if (place.count >= std::max(1, least_count_)) places.push_back(place);
+      if (place.count >= least_count_) places.push_back(place);
     }
     return places;
   }

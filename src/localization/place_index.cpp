@@ -3,11 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
 #include <utility>
 
-#include "common/executor.h"
 #include "map/ndt_level.h"
 #include "saw_ndt/registration/source_points.h"
 
@@ -19,11 +16,9 @@ namespace {
 constexpr int kGroundGoesOn = 40;
 constexpr int kHiddenGround = 5;
 
-// Without labels, a level surface so much higher than another one near by is no ground (m), nor one that is level by
-// less than this share of its curvature.
+// Without labels, a level surface so much higher than another one near by is no ground (m).
 constexpr double kRoof_m = 2.0;
 constexpr int kLowestBlock_m = 4;
-constexpr double kLevelShare = 0.9;
 
 // Larger voxels are taken to reach so many standard deviations from their mean.
 constexpr double kReach_sigmas = 1.2;
@@ -36,25 +31,13 @@ std::uint64_t keyOf(int x, int y) {
 }
 std::uint64_t tileKey(const Column& column) { return keyOf(tileOf(column.x), tileOf(column.y)); }
 
-Column columnAt(double x_m, double y_m) {
-  return {static_cast<int>(std::floor(x_m / kColumn_m)), static_cast<int>(std::floor(y_m / kColumn_m))};
-}
-
-bool isLevel(const PackedNdtCell& cell) {
-  const float* const c = cell.inverse_covariance;
-  return c[5] > kLevelShare * (c[0] + c[3] + c[5]);
-}
-
 // Visits the mean of a voxel, and the points around it that its distribution reaches where it is larger than a column.
 template <typename Visit>
 void visitPointsOf(const PackedNdtCell& cell, const Eigen::Vector3d& mean, double edge_m, const Visit& visit) {
   visit(mean);
   if (edge_m <= kColumn_m) return;
-  const float* const c = cell.inverse_covariance;
-  Eigen::Matrix3d inverse_covariance;
-  inverse_covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(inverse_covariance);
+  solver.computeDirect(inverseCovarianceOf(cell));
   const auto reach = [&](int k) -> Eigen::Vector3d {
     return kReach_sigmas / std::sqrt(std::max(solver.eigenvalues()[k], 1e-3)) * solver.eigenvectors().col(k);
   };
@@ -70,19 +53,27 @@ void visitPointsOf(const PackedNdtCell& cell, const Eigen::Vector3d& mean, doubl
 template <typename Visit>
 void visitPoints(const NdtTarget& target, bool ground, const Visit& visit) {
   for (const NdtLevel& level : target.levels()) {
-    const std::vector<VoxelCoordinate> voxels = level.index().voxels();
-    for (std::size_t i = 0; i < voxels.size(); ++i) {
+    const std::vector<Eigen::Vector3d> means = level.means();
+    for (std::size_t i = 0; i < means.size(); ++i) {
       const PackedNdtCell& cell = level.packedCells()[i];
       const bool is_ground = target.labelled() ? cell.ground_share > 0.5F : isLevel(cell);
       if (is_ground != ground) continue;
-      const Eigen::Vector3d mean = (voxels[i].cast<double>().array() + 0.5).matrix() * level.resolution() +
-                                   Eigen::Map<const Eigen::Vector3f>(cell.mean_from_centre).cast<double>();
-      if ((mean.array().abs() < kFarthest_m).all()) visitPointsOf(cell, mean, level.resolution(), visit);
+      if ((means[i].array().abs() < kFarthest_m).all()) visitPointsOf(cell, means[i], level.resolution(), visit);
     }
   }
 }
 
 }  // namespace
+
+Column columnOf(const Eigen::Vector3d& point) {
+  return {static_cast<int>(std::floor(point.x() / kColumn_m)), static_cast<int>(std::floor(point.y() / kColumn_m))};
+}
+
+std::optional<int> layerOf(double height_m) {
+  const double layer = std::floor(height_m / kColumn_m);
+  if (!(layer >= 0.0 && layer < kPlaceLayers)) return std::nullopt;
+  return static_cast<int>(layer);
+}
 
 std::vector<Eigen::Vector3d> lowestOf(const std::vector<Eigen::Vector3d>& points, double most_height_m) {
   const auto blockOf = [](const Eigen::Vector3d& point, int axis) {
@@ -106,7 +97,7 @@ std::vector<Eigen::Vector3d> lowestOf(const std::vector<Eigen::Vector3d>& points
 }
 
 void GroundHeights::add(const Eigen::Vector3d& point) {
-  const Column column = columnAt(point.x(), point.y());
+  const Column column = columnOf(point);
   Tile& tile = tiles_[tileKey(column)];
   const auto place = static_cast<std::size_t>(placeInTile(column));
   const bool is_first = std::exchange(tile.steps[place], std::uint8_t{0}) == kUnknown;
@@ -192,14 +183,14 @@ PlaceIndex::PlaceIndex(const NdtTarget& target) {
   }
   ground.spread(kGroundGoesOn);
   visitPoints(target, false, [&](const Eigen::Vector3d& point) {
-    const Column column = columnAt(point.x(), point.y());
+    const Column column = columnOf(point);
     const std::optional<float> ground_m = ground.at(column);
     if (!ground_m) return;
-    const double layer = std::floor((point.z() - *ground_m) / kColumn_m);
-    if (!(layer >= 0.0 && layer < kPlaceLayers)) return;
+    const std::optional<int> layer = layerOf(point.z() - *ground_m);
+    if (!layer) return;
     const auto [found, is_new] = tile_numbers_.try_emplace(tileKey(column), tiles_.size());
     if (is_new) tiles_.emplace_back().at = {tileOf(column.x), tileOf(column.y)};
-    const auto word = static_cast<std::size_t>(layer) * kPlaceTileRows + static_cast<std::size_t>(column.y & 63);
+    const auto word = static_cast<std::size_t>(*layer * kPlaceTileRows + (column.y & 63));
     tiles_[found->second].words[word] |= std::uint64_t{1} << (column.x & 63);
   });
   for (Tile& tile : tiles_) {

@@ -21,6 +21,11 @@ struct Column {
   int y = 0;
 };
 
+/// The column of a point (m), less than 1e9 m away.
+Column columnOf(const Eigen::Vector3d& point);
+/// The layer of something so high above the ground (m); nothing where it is below the lowest or above the highest.
+std::optional<int> layerOf(double height_m);
+
 /// The height of the ground under columns, where it has been seen and outward from there.
 class GroundHeights {
  public:

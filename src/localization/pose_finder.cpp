@@ -124,6 +124,7 @@ PoseAttempt PoseFinder::attempt(const SourcePoints& source, const Eigen::Isometr
 }
 
 std::vector<Eigen::Isometry3d> PoseFinder::rivalsOf(const SourcePoints& source, const PoseAttempt& found,
+                                                    const std::vector<Eigen::Isometry3d>& other_starts,
                                                     const PoseExpectation& expectation, const TrackState& track) {
   const Eigen::Isometry3d& T_map_found = found.alignment.T_map_source;
   const Eigen::Matrix3d& R_map_base = expectation.T_map_base.linear();
@@ -141,6 +142,7 @@ std::vector<Eigen::Isometry3d> PoseFinder::rivalsOf(const SourcePoints& source, 
       starts.back().linear() = rotationFromVector({0.0, 0.0, radiansFromDegrees(turn_deg)}) * T_map_found.linear();
     }
   }
+  starts.insert(starts.end(), other_starts.begin(), other_starts.end());
   std::vector<Eigen::Isometry3d> rivals;
   for (const Eigen::Isometry3d& start : starts) {
     const AlignmentResult rival = aligner_(source, start);
@@ -154,11 +156,7 @@ PoseAttempt PoseFinder::withoutRivals(const SourcePoints& source, const PoseAtte
                                       const PoseExpectation& expectation, const TrackState& track) {
   constexpr std::size_t kComparedPoints = 6000;
   if (!target_ || min_advantage_sigmas_ == 0.0) return found;
-  std::vector<Eigen::Isometry3d> rivals = rivalsOf(source, found, expectation, track);
-  for (const Eigen::Isometry3d& start : other_starts) {
-    const AlignmentResult rival = aligner_(source, start);
-    if (rival.converged()) rivals.push_back(rival.T_map_source);
-  }
+  const std::vector<Eigen::Isometry3d> rivals = rivalsOf(source, found, other_starts, expectation, track);
   const FitComparison comparison(*target_, source, kComparedPoints);
   PoseAttempt best = found;
   FitComparison::Fits of_best = comparison.fitsAt(best.alignment.T_map_source);

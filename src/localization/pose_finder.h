@@ -48,6 +48,7 @@ class SAW_NDT_EXPORT PoseFinder {
                       const PoseExpectation& expectation);
   void confirmFreeDirections(const SourcePoints& source, AlignmentResult& alignment);
   std::vector<Eigen::Isometry3d> rivalsOf(const SourcePoints& source, const PoseAttempt& found,
+                                          const std::vector<Eigen::Isometry3d>& other_starts,
                                           const PoseExpectation& expectation, const TrackState& track);
   PoseAttempt withoutRivals(const SourcePoints& source, const PoseAttempt& found,
                             const std::vector<Eigen::Isometry3d>& other_starts, const PoseExpectation& expectation,

@@ -64,21 +64,20 @@ ScanOutline outlineOf(const SourcePoints& source, std::size_t most_cells) {
 
   std::unordered_map<std::uint64_t, CellSums> cells;
   for (const Eigen::Vector3d& point : points.other) {
-    const Column column{static_cast<int>(std::floor(point.x() / kColumn_m)),
-                        static_cast<int>(std::floor(point.y() / kColumn_m))};
+    const Column column = columnOf(point);
     const std::optional<float> ground_m = ground.at(column);
     if (!ground_m || point.squaredNorm() > kRange_m * kRange_m) continue;
     const double height_m = point.z() - *ground_m;
-    const double layer = std::floor(height_m / kColumn_m);
-    if (!(layer >= 0.0 && layer < kPlaceLayers) || (!source.labelled && height_m < kGroundThickness_m)) continue;
+    const std::optional<int> layer = layerOf(height_m);
+    if (!layer || (!source.labelled && height_m < kGroundThickness_m)) continue;
     const std::uint64_t key = static_cast<std::uint64_t>(column.x + kPlaceTileSize) << 32 |
                               static_cast<std::uint64_t>(column.y + kPlaceTileSize) << 16 |
-                              static_cast<std::uint64_t>(layer);
+                              static_cast<std::uint64_t>(*layer);
     CellSums& cell = cells[scattered(key)];
     cell.x += static_cast<float>(point.x());
     cell.y += static_cast<float>(point.y());
     ++cell.count;
-    cell.layer = static_cast<int>(layer);
+    cell.layer = *layer;
   }
 
   std::vector<std::pair<std::uint64_t, CellSums>> lasting, low;

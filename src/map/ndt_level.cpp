@@ -40,6 +40,19 @@ PackedNdtCell::PackedNdtCell(const VoxelStatistics& statistics) {
   ground_share = static_cast<float>(statistics.ground_share);
 }
 
+bool isLevel(const PackedNdtCell& cell) {
+  constexpr float kLevelShare = 0.9F;
+  const float* const c = cell.inverse_covariance;
+  return c[5] >= kLevelShare * (c[0] + c[3] + c[5]);
+}
+
+Eigen::Matrix3d inverseCovarianceOf(const PackedNdtCell& cell) {
+  const float* const c = cell.inverse_covariance;
+  Eigen::Matrix3d inverse_covariance;
+  inverse_covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  return inverse_covariance;
+}
+
 void NdtCells::reserve(std::size_t count) {
   voxels.reserve(count);
   packed.reserve(count);

@@ -32,6 +32,11 @@ struct alignas(64) PackedNdtCell {
   float ground_share;  ///< of the points; matching does not read it
 };
 
+/// Whether the surface in a voxel is level: nine tenths of its curvature are vertical.
+bool isLevel(const PackedNdtCell& cell);
+/// The inverse covariance of a voxel (1/m^2).
+Eigen::Matrix3d inverseCovarianceOf(const PackedNdtCell& cell);
+
 /// Cells on their way into a level.
 struct NdtCells {
   std::vector<VoxelCoordinate> voxels;

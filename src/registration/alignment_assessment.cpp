@@ -42,9 +42,6 @@ constexpr double kIndependentPoints = 15000.0;
 // Where less of a scan than this is not ground, its overlap is that of all points.
 constexpr double kMinJudgedShare = 0.1;
 
-// A surface whose curvature is vertical by more than this is level.
-constexpr double kLevelSurfaceShare = 0.9;
-
 // The six directions in which the curvature is diagonal, each as a motion of the points.
 struct Motions {
   std::array<Eigen::Vector3d, 6> translation, rotation;
@@ -93,12 +90,11 @@ SurfaceAt surfaceAt(const std::vector<NdtLevel>& levels, const Eigen::Vector3d& 
     const std::int32_t number = levels[i].index().find(voxel.cast<int>());
     if (number == VoxelIndex::kNone) continue;
     const PackedNdtCell& cell = levels[i].packedCells()[static_cast<std::size_t>(number)];
-    const float* const c = cell.inverse_covariance;
     surface.cell = &cell;
     surface.level = i;
     surface.offset = p - (voxel.array() + 0.5).matrix() * resolution_m -
                      Eigen::Map<const Eigen::Vector3f>(cell.mean_from_centre).cast<double>();
-    surface.inverse_covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+    surface.inverse_covariance = inverseCovarianceOf(cell);
     const double most_thickness_m = kMostThickness_m * std::max(1.0, levels.front().resolution());
     surface.thin = surface.inverse_covariance.trace() * most_thickness_m * most_thickness_m > 1.0;
     surface.squared_mahalanobis = surface.offset.dot(surface.inverse_covariance * surface.offset);
@@ -133,7 +129,7 @@ class PointSampler {
     }
     const Eigen::Matrix3d& inverse_covariance = surface.inverse_covariance;
     const double trace = inverse_covariance.trace();
-    const bool judged = source_.labelled ? !ground : inverse_covariance(2, 2) < kLevelSurfaceShare * trace;
+    const bool judged = source_.labelled ? !ground : !isLevel(*surface.cell);
     sums.judged += judged ? 1 : 0;
     sums.judged_and_matched += judged && surface.fits() ? 1 : 0;
     sums.matched += surface.fits() ? 1 : 0;

@@ -220,7 +220,7 @@ TEST_F(LocalizeApp, WrongUsageIsNamed) {
   expectLocalizeFails(2, {"max_iterations = 0"}, "-max-iterations 0");
   expectLocalizeFails(2, {"max_correction_m = 0"}, "-max-correction 0");
   expectLocalizeFails(2, {"-initial-pose", "'1,2,3'"}, "-initial-pose 1,2,3");
-  expectLocalizeFails(2, {"-initial-pose", "'1,2,3,4,5,x'"}, "-initial-pose 1,2,3,4,5,x");
+  expectLocalizeFails(2, {"-initial-pose", "'x'", "finite number"}, "-initial-pose 1,2,3,4,5,x");
   expectLocalizeFails(2, {"-initial-pose unknown", "-no-search"}, "-initial-pose unknown -no-search");
   expectLocalizeFails(2, {"initial-yaw-range", "181"}, "-initial-yaw-range 181");
   expectLocalizeFails(2, {"initial-radius"}, "-initial-radius 0");

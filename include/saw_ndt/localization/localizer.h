@@ -125,9 +125,9 @@ class SAW_NDT_EXPORT Localizer {
 
   /// @param scan     in the LiDAR frame
   /// @param stamp_s  time of the scan; stamps should grow
+  /// @param priors   what other sensors say of the pose of this scan
   /// @throws std::logic_error before setInitialPose() or setUnknownPose(), std::invalid_argument where the stamp or a
   ///         prior is not finite
-  /// @param priors   what other sensors say of the pose of this scan
   LocalizationResult localize(const ScanView& scan, double stamp_s, const ScanPriors& priors = {});
 
   const LocalizerOptions& options() const { return options_; }
