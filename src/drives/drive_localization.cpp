@@ -25,7 +25,7 @@ std::vector<DriveLocalization> localizeByTurns(const std::vector<ScanLocalizer>&
     for (std::size_t turn = 0; turn < localizers.size(); ++turn) {
       const std::size_t whose = (i + turn) % localizers.size();
       // Of a scan that could not be read there are no points: its pose is the prediction.
-      LocalizationResult result = localizers[whose](viewOf(scan.points), scan.stamp_s, scan.priors);
+      LocalizationResult result = localizers[whose](viewOf(scan), scan.stamp_s, scan.priors);
       if (!scan.failure.empty()) result.acceptance = Acceptance::UNREADABLE;
       runs[whose].results.push_back(std::move(result));
       if (turn_done) turn_done();

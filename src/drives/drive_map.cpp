@@ -51,7 +51,7 @@ WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& optio
     std::vector<StructuralLabel> labels;
     RecordedScan scan;
     while (source.next(scan)) {
-      const ScanView view = viewOf(scan.points);
+      const ScanView view = viewOf(scan);
       if (options.segmentation) segmenter.segment(view, labels);
       {
         const std::lock_guard<std::mutex> lock(map_mutex);

@@ -68,12 +68,33 @@ struct ScanView {
   const float* point(std::size_t index) const { return xyz + index * stride; }
 };
 
+/// The points of one scan and what its sensor tells of each, owned.
+struct ScanPoints {
+  std::vector<LidarPoint> points;    ///< in the order of the sensor
+  std::vector<std::uint16_t> rings;  ///< ring number of each point; empty where they are not known
+  std::vector<double> times_s;       ///< as ScanView::times_s; empty where they are not known
+  std::size_t width = 0;             ///< points per row of an organized cloud; ignored where height is 1
+  std::size_t height = 1;            ///< rows of an organized cloud, 1 for an unorganized one
+};
+
 /// A view of points one after the other.
 inline ScanView viewOf(const std::vector<LidarPoint>& points) {
   ScanView view;
   view.xyz = points.empty() ? nullptr : &points.front().x;
   view.size = points.size();
   view.width = points.size();
+  return view;
+}
+
+/// A view of a scan with all that is known of its points.
+inline ScanView viewOf(const ScanPoints& scan) {
+  ScanView view = viewOf(scan.points);
+  if (!scan.rings.empty()) view.rings = PointField(scan.rings.data());
+  if (!scan.times_s.empty()) view.times_s = PointField(scan.times_s.data());
+  if (scan.height > 1) {
+    view.width = scan.width;
+    view.height = scan.height;
+  }
   return view;
 }
 

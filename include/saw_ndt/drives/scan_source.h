@@ -12,11 +12,10 @@
 namespace saw_ndt {
 
 /// A scan of a recording and what is known of it.
-struct RecordedScan {
+struct RecordedScan : ScanPoints {
   int number = 0;                                ///< within the recording, from 0
   std::string name;                              ///< its own name, for messages, such as 000012.bin
   double stamp_s = 0.0;                          ///< time of the scan
-  std::vector<LidarPoint> points;                ///< in the order of the sensor
   std::optional<Eigen::Isometry3d> T_map_lidar;  ///< reference pose
   ScanPriors priors;                             ///< what other sensors measured
   std::string failure;                           ///< why the points could not be read, empty where they could
