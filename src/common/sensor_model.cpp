@@ -43,7 +43,7 @@ void SensorModel::check() const {
   // Files that name the sensor have it in a line.
   checkOption(std::all_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) >= ' '; }),
               "name", name, "without line breaks and other control characters");
-  checkOption(rows() >= 1 && rows() <= 1024, "elevations_deg.size()", rows(), "1 to 1024");
+  checkOption(rows() <= 1024, "elevations_deg.size()", rows(), "at most 1024");
   checkOption(columns >= 8 && columns <= 16384, "columns", columns, "8 to 16384");
   for (int row = 0; row < rows(); ++row) {
     const double elevation = elevations_deg[row];
