@@ -20,7 +20,7 @@ void checkPositive(double value, const char* name) {
 
 void checkShare(double value, const char* name) { checkOption(value >= 0.0 && value <= 1.0, name, value, "0 to 1"); }
 
-/// What data sheets say of a LiDAR at ten turns a second; fields as in LidarOptions.
+/// About what data sheets say of a LiDAR at ten turns a second; fields as in LidarOptions.
 struct DataSheet {
   const char* name;
   int firings_per_turn;
