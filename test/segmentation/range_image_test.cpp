@@ -36,6 +36,7 @@ void expectRowsAndColumns(const RangeImage& image, const SensorModel& sensor, co
 TEST(RangeImage, RecoversRingsFromFileOrderForEverySensor) {
   for (const std::string& name : SensorModel::names()) {
     const SensorModel sensor = SensorModel::named(name);
+    if (sensor.rows() == 0) continue;
     const auto cloud = ringOrderedScan(sensor, patchyRange);
     RangeImage image;
     image.project(viewOf(cloud), sensor);
