@@ -76,7 +76,11 @@ std::pair<saw_ndt::Trajectory, saw_ndt::Trajectory> readTrajectories(const Files
 }
 
 /// Says what is odd about the stamps of a trajectory.
-void checkStamps(const saw_ndt::AppOptions& app, const std::string& file, const saw_ndt::Trajectory& trajectory) {
+void checkStamps(const saw_ndt::AppOptions& app, const Files& files, const std::string& own_file,
+                 const saw_ndt::Trajectory& trajectory) {
+  const bool has_stamps = trajectory.format == saw_ndt::TrajectoryFormat::TUM;
+  if (!has_stamps && files.times.empty()) return;
+  const std::string& file = has_stamps ? own_file : files.times;
   std::vector<double> stamps_s;
   for (const saw_ndt::StampedPose& pose : trajectory.poses) stamps_s.push_back(pose.stamp_s);
   for (const std::string& odd : saw_ndt::internal::oddStamps(stamps_s)) saw_ndt::warn(app, file + ": " + odd);

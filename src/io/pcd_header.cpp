@@ -53,11 +53,12 @@ class HeaderReader {
     char c = 0;
     while (stream_.get(c) && c != '\n' && line.size() < kLongestHeaderLine) line += c;
     if (c != '\n') refuse("is no PCD file: the header has no DATA line");
-    if (line.empty() || line.front() == '#') return "";
+    if (line.empty()) return "";
     std::istringstream words(line);
     std::string key;
     words >> key;
     if (key.empty()) refuse("a line of blanks within the header");
+    if (key.front() == '#') return "";
     if (key == "COLUMNS") key = "FIELDS";
     if (!seen_.insert(key).second) refuse(key + " is given twice");
     if ((key == "SIZE" || key == "TYPE" || key == "COUNT") && header_.fields.empty()) refuse(key + " before FIELDS");
