@@ -6,6 +6,7 @@
 #include "output_folder.h"
 #include "report/benchmark_output.h"
 #include "report/benchmark_report.h"
+#include "saw_ndt/drives/scan_selection.h"
 #include "segmentation_options.h"
 #include "stage_progress.h"
 
@@ -78,10 +79,16 @@ int main(int argc, char** argv) {
       throw saw_ndt::UsageError("option -drives: '" + drives + "' is none of same, other, both");
     }
     options.drives = drivesOf(drives, !map_folders.empty());
-    options.localizer.segmentation = segmentation.options();
+    options.localizer.segmentation = segmentation.stated();
     options.localizer.alignment.threads = app.threads();
-    const saw_ndt::Benchmark benchmark = saw_ndt::checkedUsage(
-        [&] { return saw_ndt::Benchmark(openDrives(folders, map_folders, bin_fields.value()), options); });
+    std::vector<saw_ndt::BenchmarkDrive> opened =
+        saw_ndt::checkedUsage([&] { return openDrives(folders, map_folders, bin_fields.value()); });
+    const std::vector<int> first_selected = saw_ndt::checkedUsage(
+        [&] { return saw_ndt::parseScanSelection(options.scans, opened.front().sequence.scanCount()); });
+    options.localizer.segmentation =
+        segmentation.learnedFrom(saw_ndt::firstScans(*opened.front().sequence.scans(first_selected)));
+    const saw_ndt::Benchmark benchmark =
+        saw_ndt::checkedUsage([&] { return saw_ndt::Benchmark(std::move(opened), options); });
     const saw_ndt::RunRecord record = saw_ndt::recordRun({argv, argv + argc}, app.threads());
 
     saw_ndt::OutputFolder folder(out_dir);

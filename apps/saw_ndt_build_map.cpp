@@ -42,13 +42,17 @@ int main(int argc, char** argv) {
     const std::vector<int> selected =
         saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, sequence.scanCount()); });
     options.threads = app.threads();
-    options.segmentation = segmentation.options();
-    if (classical) options.segmentation.reset();
+    options.segmentation = segmentation.stated();
     saw_ndt::checkedUsage([&] { return saw_ndt::WeightedMapBuilder(options.resolution_m); });
 
     sequence.posesLidar();
     // Found out before the long work: whether the map can be written. This leaves nothing behind.
     { const saw_ndt::internal::AtomicOutput probe(map_file); }
+    if (classical) {
+      options.segmentation.reset();
+    } else {
+      options.segmentation = segmentation.learnedFrom(saw_ndt::firstScans(*sequence.scans(selected)));
+    }
 
     saw_ndt::ProgressBar progress(selected.size());
     std::vector<std::string> left_out;

@@ -20,9 +20,9 @@ constexpr char kDescription[] =
     "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
     "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
     "is printed too. A scan that is rejected gets the pose that was predicted for it, and none as long as nobody knows "
-    "where the vehicle is; where none is located the drive has failed. Give -sensor, -ground-rule and "
-    "-mounting-pitch-deg as for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial "
-    "pose, and all together they tell the errors. A vehicle that is lost is looked for, first around its prediction, "
+    "where the vehicle is; where none is located the drive has failed. Give -sensor, -ground-rule and -slope-deg as "
+    "for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial pose, and all together "
+    "they tell the errors. A vehicle that is lost is looked for, first around its prediction, "
     "then in all of the map.";
 
 // An uncertainty is given as how far it reaches.
@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
   return saw_ndt::runApp(argc, argv, app, [&] {
     if (skip_s < 0.0) throw saw_ndt::UsageError("option -skip: must be 0 or greater");
     options.method = saw_ndt::LocalizationMethod::named(method);
-    options.segmentation = segmentation.options();
+    options.segmentation = segmentation.stated();
     options.alignment.threads = app.threads();
     options.T_base_lidar = saw_ndt::transformOf(base_lidar);
     options.search = !no_search;
@@ -138,7 +138,12 @@ int main(int argc, char** argv) {
     }
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
-    saw_ndt::Localizer localizer(loadTarget(map_file, options.method, app.threads()), options);
+    const saw_ndt::NdtTarget target = loadTarget(map_file, options.method, app.threads());
+    if (options.method.segment) {
+      options.segmentation = segmentation.learnedFrom(saw_ndt::firstScans(*sequence.scans(selected)),
+                                                      {options.T_base_lidar.linear(), target.origin().segmentation});
+    }
+    saw_ndt::Localizer localizer(target, options);
     if (initial_pose == kUnknown) {
       localizer.setUnknownPose();
     } else {

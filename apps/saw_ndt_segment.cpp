@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   segmentation.addTo(app);
 
   return saw_ndt::runApp(argc, argv, app, [&] {
-    saw_ndt::ScanSegmenter segmenter(segmentation.options());
+    segmentation.stated();
     const saw_ndt::ScanPoints scan = saw_ndt::readScanPoints(scan_file, bin_fields.value());
     std::vector<std::uint16_t> classes;
     if (!label_file.empty()) {
@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
                                  std::to_string(scan.points.size()) + " points");
       }
     }
+    saw_ndt::ScanSegmenter segmenter(segmentation.learnedFrom({scan}));
     std::vector<saw_ndt::StructuralLabel> labels;
     segmenter.segment(saw_ndt::viewOf(scan), labels, app.threads());
     saw_ndt::writeLabelledScan(pcd_file, scan_file, labels, bin_fields.value());

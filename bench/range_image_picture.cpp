@@ -5,6 +5,7 @@
 #include "app_options.h"
 #include "report/gnuplot.h"
 #include "saw_ndt/io/kitti.h"
+#include "saw_ndt/io/scan_file.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "segmentation/range_image.h"
 #include "segmentation_options.h"
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
     const std::filesystem::path file = output;
     if (file.extension() != ".png") throw saw_ndt::UsageError("option -output: must name a .png file");
     titles.resize(scans.size());
-    const saw_ndt::SensorModel sensor = segmentation.options().sensor;
+    const saw_ndt::SensorModel sensor = segmentation.learnedFrom({saw_ndt::readScanPoints(scans.front())}).sensor;
     constexpr int kPanelHeight_px = 150;
     saw_ndt::GnuplotPicture picture;
     picture.name = file.stem().string();

@@ -74,7 +74,9 @@ int main(int argc, char** argv) {
 
   return saw_ndt::runApp(argc, argv, app, [&] {
     if (real_drives.empty()) throw saw_ndt::UsageError("option -real is needed");
-    saw_ndt::ScanSegmenter segmenter(segmentation.options());
+    const saw_ndt::KittiSequence first(real_drives.front());
+    saw_ndt::ScanSegmenter segmenter(segmentation.learnedFrom(
+        saw_ndt::firstScans(*first.scans(saw_ndt::parseScanSelection(real_scans, first.scanCount())))));
     saw_ndt::ProgressBar progress(real_drives.size() + drives.size());
 
     std::map<std::string, std::vector<double>> real_values;

@@ -44,9 +44,21 @@ LocalizerOptions withMethod(LocalizerOptions options) {
   return options;
 }
 
+// A map may be of another vehicle: where its LiDAR was and what of it was seen does not matter.
+SegmentationOptions mountedAs(SegmentationOptions options, const SegmentationOptions& other) {
+  options.mounting_pitch_deg = other.mounting_pitch_deg;
+  options.mounting_roll_deg = other.mounting_roll_deg;
+  options.min_range_m = other.min_range_m;
+  options.max_range_m = other.max_range_m;
+  options.vehicle_box_m = other.vehicle_box_m;
+  options.ground.sensor_height_m = other.ground.sensor_height_m;
+  return options;
+}
+
 void requireSegmentedAlike(const MapOrigin& origin, const LocalizerOptions& options) {
   if (!options.method.segment || options.allow_other_segmentation || !origin.segmentation) return;
-  if (const auto difference = firstDifference(*origin.segmentation, options.segmentation)) {
+  if (const auto difference =
+          firstDifference(mountedAs(*origin.segmentation, options.segmentation), options.segmentation)) {
     throw std::invalid_argument("segmentation." + difference->field + " = " + difference->second +
                                 ": the scans of the map were segmented with " + difference->first);
   }

@@ -14,6 +14,7 @@ struct BeamGroup {
   double elevation_deg = 0.0;  ///< median
   double spread_deg = 0.0;     ///< median distance from that
   double step_deg = 0.0;       ///< median azimuth from one point to the next; 0 where there are too few
+  std::size_t points = 0;
 };
 
 /// Groups that hold enough points, in order of their numbers.

@@ -16,7 +16,7 @@ float tangent(double degrees) { return static_cast<float>(std::tan(radiansFromDe
 }  // namespace
 
 void GroundDetection::detect(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options,
-                             std::vector<std::uint8_t>& ground) {
+                             std::vector<std::uint8_t>& ground, const std::vector<float>& lowest_tangents) {
   if (options.rule == GroundRule::INCLINATION) {
     detectByInclination(image, sensor, options, ground);
     return;
@@ -24,6 +24,7 @@ void GroundDetection::detect(const PixelImage& image, const SensorModel& sensor,
   const auto columns = static_cast<std::size_t>(image.columns());
   sensor_height_ = estimatedSensorHeight(image, options);
   last_range_.assign(columns, 0.0F);
+  if (!lowest_tangents.empty()) beginWhereBeamsMeetGround(lowest_tangents);
   last_height_.assign(columns, -sensor_height_);
   profile_height_.assign(columns, -sensor_height_);
   states_.resize(image.range().size());
@@ -80,6 +81,17 @@ float GroundDetection::estimatedSensorHeight(const PixelImage& image, const Grou
   return -*middle;
 }
 
+// Half way to where its lowest beam meets level ground, a column of a sensor that leans may see the first return of a
+// wall, which is higher above level ground than ground can be by the slope from the sensor on.
+void GroundDetection::beginWhereBeamsMeetGround(const std::vector<float>& lowest_tangents) {
+  constexpr float kShareOfWay = 0.5F;
+  constexpr float kFar_m = 1000.0F;
+  for (std::size_t column = 0; column < lowest_tangents.size(); ++column) {
+    const float fall = -lowest_tangents[column];
+    last_range_[column] = fall > 0.0F ? std::min(kFar_m, kShareOfWay * sensor_height_ / fall) : kFar_m;
+  }
+}
+
 void GroundDetection::grow(const PixelImage& image, const GroundOptions& options, std::size_t first_column,
                            std::size_t columns) {
   const GrowthLimits limits = {tangent(options.slope_deg), static_cast<float>(options.step_tolerance_m),
@@ -107,6 +119,33 @@ void GroundDetection::doubtFeet(const PixelImage& image, const SensorModel& sens
     internal::doubtFeet(columns, limits,
                         {image.horizontalRange().data() + begin, image.height().data() + begin, obstacle_range_.data(),
                          obstacle_height_.data(), states_.data() + begin});
+  }
+}
+
+void GroundDetection::takeBackDoubts(const PixelImage& image, const SensorModel& sensor,
+                                     std::vector<StructuralLabel>& labels) {
+  constexpr double kFarApart_deg = 0.6;
+  // How far what is taken back may be from the ground before it, and a slope beyond.
+  constexpr float kLevel_m = 0.1F;
+  constexpr float kLevelSlope = 0.02F;
+  const auto columns = static_cast<std::size_t>(image.columns());
+  last_range_.assign(columns, 0.0F);
+  last_height_.assign(columns, -sensor_height_);
+  for (int row = image.rows() - 1; row > 0; --row) {
+    const bool far_apart = sensor.elevations_deg[row - 1] - sensor.elevations_deg[row] >= kFarApart_deg;
+    const std::size_t begin = static_cast<std::size_t>(row) * columns;
+    for (std::size_t column = 0; column < columns; ++column) {
+      StructuralLabel& label = labels[begin + column];
+      const float range = image.horizontalRange()[begin + column], height = image.height()[begin + column];
+      if (far_apart && label == StructuralLabel::NOISE && states_[begin + column] >= kDoubtfulState &&
+          std::abs(height - last_height_[column]) <= kLevel_m + kLevelSlope * (range - last_range_[column])) {
+        label = StructuralLabel::GROUND;
+      }
+      if (label == StructuralLabel::GROUND) {
+        last_range_[column] = range;
+        last_height_[column] = height;
+      }
+    }
   }
 }
 

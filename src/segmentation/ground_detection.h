@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "saw_ndt/common/labels.h"
 #include "saw_ndt/common/sensor_model.h"
 #include "saw_ndt/segmentation/segmentation_options.h"
 #include "segmentation/pixel_image.h"
@@ -15,8 +16,15 @@ class GroundDetection {
   /// Writes 1 for every pixel of the image that is ground and 0 for every other, row-major. The options have been
   /// checked, and the image was projected with the sensor model. In one thread: handing parts to others would take as
   /// long.
+  /// @param lowest_tangents  of the elevation of each column's lowest beam, where the sensor leans; else empty
   void detect(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options,
-              std::vector<std::uint8_t>& ground);
+              std::vector<std::uint8_t>& ground, const std::vector<float>& lowest_tangents = {});
+
+  /// Makes ground again of what was followed as ground in the last image, was then doubted and is no part of a
+  /// component, where it lies level with the ground before it; in the rows of beams that are far apart alone: what they
+  /// meet below an obstacle is seldom its foot.
+  /// @param labels  of the pixels, as ComponentFilter writes them
+  void takeBackDoubts(const PixelImage& image, const SensorModel& sensor, std::vector<StructuralLabel>& labels);
 
   /// Height of the sensor above the ground (m) that ground was followed from in the last image.
   float sensorHeight() const { return sensor_height_; }
@@ -30,6 +38,7 @@ class GroundDetection {
 
   static void detectByInclination(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options,
                                   std::vector<std::uint8_t>& ground);
+  void beginWhereBeamsMeetGround(const std::vector<float>& lowest_tangents);
   float estimatedSensorHeight(const PixelImage& image, const GroundOptions& options);
   void grow(const PixelImage& image, const GroundOptions& options, std::size_t first_column, std::size_t columns);
   void doubtFeet(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options);

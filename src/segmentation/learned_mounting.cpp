@@ -198,8 +198,8 @@ SegmentationOptions withMounting(const SegmentationOptions& options, const Learn
   constexpr double kLevel_deg = 5.0;
   constexpr double kSameHeight_m = 0.3;
   SegmentationOptions result = options;
-  const double lean_cosine = std::cos(radiansFromDegrees(mounting.pitch_deg)) *
-                             std::cos(radiansFromDegrees(mounting.roll_deg));
+  const double lean_cosine =
+      std::cos(radiansFromDegrees(mounting.pitch_deg)) * std::cos(radiansFromDegrees(mounting.roll_deg));
   if (lean_cosine < std::cos(radiansFromDegrees(kLevel_deg))) {
     result.mounting_pitch_deg = mounting.pitch_deg;
     result.mounting_roll_deg = mounting.roll_deg;

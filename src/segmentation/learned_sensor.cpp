@@ -63,15 +63,25 @@ const SensorModel* knownSensor(const std::vector<SensorModel>& known, const std:
     const auto groups = static_cast<double>(elevations_deg.size());
     if (groups < kLeastSeen * (matching.rows().back() - matching.rows().front() + 1)) continue;
     const double cost = misfit + kUnseenBeam * (1.0 - groups / model.rows());
-    if (cost >= least_cost) continue;
+    if (cost > least_cost) continue;
     least_cost = cost;
     best = &model;
   }
   return best;
 }
 
+/// The sensor whose points are given in a frame that stands on its head.
+SensorModel upsideDown(SensorModel model) {
+  model.name += " upside down";
+  std::reverse(model.elevations_deg.begin(), model.elevations_deg.end());
+  for (double& elevation_deg : model.elevations_deg) elevation_deg = -elevation_deg;
+  return model;
+}
+
+/// Of those with the same beams the last one is taken: upside down comes first.
 std::vector<SensorModel> knownSensors() {
   std::vector<SensorModel> models;
+  for (const std::string& name : SensorModel::names()) models.push_back(upsideDown(SensorModel::named(name)));
   for (const std::string& name : SensorModel::names()) models.push_back(SensorModel::named(name));
   return models;
 }
@@ -120,8 +130,7 @@ LearnedSensor sensorOf(const BeamGroups& beams, const ScanView& scan, const std:
   for (const float elevation_deg : allElevations(beams)) {
     // Rounding may have put two beams at one elevation.
     const double before = learned.model.elevations_deg.empty() ? 90.0 : learned.model.elevations_deg.back();
-    learned.model.elevations_deg.push_back(
-        std::min(static_cast<double>(elevation_deg), before - 1e-3));
+    learned.model.elevations_deg.push_back(std::min(static_cast<double>(elevation_deg), before - 1e-3));
   }
   learned.model.name = std::to_string(learned.model.rows()) + " beams";
   constexpr int kCommonColumns = 1800;
@@ -176,15 +185,31 @@ BeamGroups crowdedElevations(const ScanView& scan) {
 
 LearnedSensor learnSensor(const ScanView& scan) {
   const std::vector<SensorModel> known = knownSensors();
-  for (const BeamGroups& groups : beamGroupsOf(scan)) {
-    if (groups.areBeams() && (groups.numbered || groups.areInOrder())) return sensorOf(groups, scan, known);
+  const std::vector<BeamGroups> candidates = beamGroupsOf(scan);
+  for (const BeamGroups& groups : candidates) {
+    if (groups.numbered && groups.areBeams()) return sensorOf(groups, scan, known);
   }
+  // Beams that nothing blurs tell more than an order in which those that see nothing are missing.
   const BeamGroups crowds = crowdedElevations(scan);
   if (!crowds.groups.empty()) return sensorOf(crowds, scan, known);
+  for (const BeamGroups& groups : candidates) {
+    if (groups.areBeams() && groups.areInOrder()) return sensorOf(groups, scan, known);
+  }
   LearnedSensor none;
   none.model = {kNoBeams, 1800, {}};
   none.evidence = "no beams";
   return none;
+}
+
+LearnedSensor learnSensor(const std::vector<ScanView>& scans) {
+  std::vector<LearnedSensor> learned;
+  for (const ScanView& scan : scans) learned.push_back(learnSensor(scan));
+  const auto votes = [&](const LearnedSensor& sensor) {
+    return std::count_if(learned.begin(), learned.end(),
+                         [&](const LearnedSensor& other) { return other.model.name == sensor.model.name; });
+  };
+  return *std::max_element(learned.begin(), learned.end(),
+                           [&](const LearnedSensor& a, const LearnedSensor& b) { return votes(a) < votes(b); });
 }
 
 }  // namespace saw_ndt

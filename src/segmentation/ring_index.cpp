@@ -18,6 +18,11 @@ constexpr float kGreatestMeanMisfitDeg = 1.5F;
 // How far beyond the outermost beams a point may lie, since calibration and motion compensation shift what is seen.
 constexpr double kElevationMarginDeg = 1.5;
 
+// A run of points that are farther than this from its median elevation holds several rings: where most of a ring has no
+// return, nothing tells where it ends. On KITTI none is above 0.5 degrees.
+constexpr float kGreatestSpreadDeg = 1.5F;
+constexpr double kMostPointsSpread = 0.05;
+
 constexpr std::size_t kSamplesOfRun = 32;
 constexpr std::size_t kSamplesOfScan = 2048;
 constexpr double kMostRings = 1024.0;
@@ -54,9 +59,8 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
     orderGroups(scan, points, rows, row_of, sensor);
     rows_.resize(scan.size);
     for (std::size_t i = 0; i < scan.size; ++i) rows_[i] = row_of_group_[row_of(i)];
-  } else if (scan.rings.known()) {
+  } else if (scan.rings.known() && assignFromRings(scan, points, sensor)) {
     source_ = VerticalIndexSource::RING_FIELD;
-    assignFromRings(scan, points, sensor);
   } else if (findRuns(scan, points, sensor.columns, rows, runs_) && matchRunsToBeams(scan, points, sensor)) {
     source_ = VerticalIndexSource::FILE_ORDER;
   } else {
@@ -65,7 +69,7 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
   }
 }
 
-void RingIndex::assignFromRings(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
+bool RingIndex::assignFromRings(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
   rows_.resize(scan.size);
   std::size_t groups = static_cast<std::size_t>(sensor.rows());
   for (std::size_t i = 0; i < scan.size; ++i) {
@@ -76,11 +80,28 @@ void RingIndex::assignFromRings(const ScanView& scan, const PointMeasurements& p
   }
   orderGroups(
       scan, points, groups, [&](std::size_t point) { return static_cast<std::size_t>(rows_[point]); }, sensor);
+  if (!groupsAreBeams()) return false;
   for (std::size_t i = 0; i < scan.size; ++i) {
     const std::int16_t row = row_of_group_[static_cast<std::size_t>(rows_[i])];
     if (row == kNoRow) refuseRing(scan.rings[i], i, sensor);
     rows_[i] = row;
   }
+  return true;
+}
+
+// Numbers that are none of beams, such as a counter, have all elevations in each group.
+bool RingIndex::groupsAreBeams() const {
+  constexpr double kGreatestShare = 0.7;  // of the variance of all elevations that may be left within the groups
+  constexpr std::size_t kLeastPoints = 200;
+  double points = 0.0, sum = 0.0, squares = 0.0, within = 0.0;
+  for (const GroupSum& group : group_sums_) {
+    if (group.points == 0) continue;
+    points += group.points;
+    sum += group.sine;
+    squares += group.squared_sine;
+    within += group.squared_sine - group.sine * group.sine / static_cast<float>(group.points);
+  }
+  return points < kLeastPoints || within <= kGreatestShare * (squares - sum * sum / points);
 }
 
 // Groups are numbered from the top, from the bottom, or in some other order, as the lasers of a Velodyne are.
@@ -93,7 +114,9 @@ void RingIndex::orderGroups(const ScanView& scan, const PointMeasurements& point
   for (std::size_t i = 0; i<scan.size; i += scan.size> kSamplesOfScan ? kSampleStep : 1) {
     if (points.range[i] <= 0.0F) continue;
     GroupSum& sum = group_sums_[group_of_point(i)];
-    sum.sine += points.elevationSine(scan, i);
+    const float sine = points.elevationSine(scan, i);
+    sum.sine += sine;
+    sum.squared_sine += sine * sine;
     ++sum.points;
   }
   group_order_.clear();
@@ -151,6 +174,7 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
   const std::size_t runs = runs_.size();
   run_elevations_.resize(runs);
   run_spreads_.resize(runs);
+  std::size_t points_spread = 0;
   for (std::size_t run = 0; run < runs; ++run) {
     const std::size_t end = runs_[run].end;
     const std::size_t step = std::max<std::size_t>(1, (end - runs_[run].begin) / kSamplesOfRun);
@@ -164,7 +188,9 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
     for (float& sample : samples_) sample = std::abs(sample - median);
     run_elevations_[run] = static_cast<float>(degreesFromRadians(std::asin(std::clamp(median, -1.0F, 1.0F))));
     run_spreads_[run] = static_cast<float>(degreesFromRadians(medianOf(samples_)));
+    if (run_spreads_[run] > kGreatestSpreadDeg) points_spread += end - runs_[run].begin;
   }
+  if (static_cast<double>(points_spread) > kMostPointsSpread * static_cast<double>(scan.size)) return false;
 
   const bool rises = run_elevations_.front() < run_elevations_.back();
   if (rises) {

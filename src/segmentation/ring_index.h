@@ -46,12 +46,14 @@ class RingIndex {
   /// Points of one row or ring number.
   struct GroupSum {
     float sine = 0.0F;
+    float squared_sine = 0.0F;
     std::uint32_t points = 0;
     float elevation_deg = 0.0F;
   };
 
   void assignFromElevation(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
-  void assignFromRings(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
+  bool assignFromRings(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor);
+  bool groupsAreBeams() const;
   template <typename GroupOfPoint>
   void orderGroups(const ScanView& scan, const PointMeasurements& points, std::size_t groups,
                    const GroupOfPoint& group_of_point, const SensorModel& sensor);

@@ -1,8 +1,11 @@
 #include "saw_ndt/segmentation/scan_segmenter.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "common/executor.h"
+#include "saw_ndt/common/geometry.h"
 #include "segmentation/segmentation_stages.h"
 
 namespace saw_ndt {
@@ -21,6 +24,26 @@ void segmentOnGrid(const ScanView& scan, SegmentationStages& stages, std::vector
   stages.grid.label(stages.ground, stages.options, labels);
 }
 
+// As far as a sensor leans by more than the ground may.
+std::vector<float> lowestTangents(const SensorModel& sensor, const ScanProjection& projection) {
+  constexpr double kUpright_deg = 5.0;
+  if (std::abs(projection.R_level_lidar(2, 2)) > std::cos(radiansFromDegrees(kUpright_deg))) return {};
+  std::vector<float> tangents;
+  for (int column = 0; column < sensor.columns; ++column) {
+    const double azimuth = 2.0 * kPi * (column + 0.5) / sensor.columns;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const double elevation_deg : {sensor.elevations_deg.front(), sensor.elevations_deg.back()}) {
+      const double elevation = radiansFromDegrees(elevation_deg);
+      const Eigen::Vector3d beam(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                                 std::sin(elevation));
+      const Eigen::Vector3d level = projection.R_level_lidar.cast<double>() * beam;
+      lowest = std::min(lowest, level.z() / level.head<2>().norm());
+    }
+    tangents.push_back(static_cast<float>(lowest));
+  }
+  return tangents;
+}
+
 }  // namespace
 
 internal::SegmentationStages::SegmentationStages(const SegmentationOptions& with)
@@ -28,6 +51,7 @@ internal::SegmentationStages::SegmentationStages(const SegmentationOptions& with
       projection(with),
       on_grid(with.sensor.rows() == 0 || projection.liesOnItsSide()),
       sensor(with.sensor) {
+  if (!on_grid) lowest_tangents = lowestTangents(sensor, projection);
   if (!projection.isUpsideDown()) return;
   std::reverse(sensor.elevations_deg.begin(), sensor.elevations_deg.end());
   for (double& elevation_deg : sensor.elevations_deg) elevation_deg = -elevation_deg;
@@ -51,8 +75,9 @@ void ScanSegmenter::segment(const ScanView& scan, std::vector<StructuralLabel>& 
     return;
   }
   s.image.project(scan, options.sensor, s.projection, threads);
-  s.ground_detection.detect(s.image, s.sensor, options.ground, s.ground);
+  s.ground_detection.detect(s.image, s.sensor, options.ground, s.ground, s.lowest_tangents);
   s.component_filter.label(s.image, s.sensor, s.ground, options.components, s.pixel_labels, threads);
+  if (options.ground.rule == GroundRule::GROWING) s.ground_detection.takeBackDoubts(s.image, s.sensor, s.pixel_labels);
   labels.resize(scan.size);
   const std::int32_t* const pixel_of_point = s.image.pixelOfPoint().data();
   const StructuralLabel* const pixel_labels = s.pixel_labels.data();

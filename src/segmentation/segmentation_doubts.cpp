@@ -16,13 +16,11 @@ namespace {
 
 constexpr double kMostNoise = 0.5;
 constexpr double kLeastGround = 0.05;
-constexpr double kMostOffBeams = 0.1;
+constexpr double kMostOffBeams = 0.2;
 constexpr double kLeastHeight_m = 0.3;
 constexpr double kGreatestHeight_m = 5.0;
 
-std::string percentText(double share) {
-  return std::to_string(static_cast<int>(std::lround(100.0 * share))) + " %";
-}
+std::string percentText(double share) { return std::to_string(static_cast<int>(std::lround(100.0 * share))) + " %"; }
 
 std::string metresText(double metres) {
   std::ostringstream text;
@@ -57,8 +55,9 @@ double shareOffBeams(const ScanView& scan, const SensorModel& sensor, const Rang
 
 }  // namespace
 
-std::vector<std::string> segmentationDoubts(const ScanView& scan, const SegmentationOptions& options) {
-  std::vector<std::string> doubts;
+std::vector<SegmentationDoubt> segmentationDoubts(const ScanView& scan, const SegmentationOptions& options) {
+  using Cause = SegmentationDoubt::Cause;
+  std::vector<SegmentationDoubt> doubts;
   ScanSegmenter segmenter(options);
   std::vector<StructuralLabel> labels;
   segmenter.segment(scan, labels);
@@ -73,40 +72,44 @@ std::vector<std::string> segmentationDoubts(const ScanView& scan, const Segmenta
     below += stages.projection.R_level_lidar.row(2).dot(Eigen::Map<const Eigen::RowVector3f>(p)) < -0.3F ? 1.0 : 0.0;
   }
   if (returns == 0.0) {
-    doubts.emplace_back("the scan has no return");
+    doubts.push_back({Cause::NO_RETURN, "no point is a return"});
     return doubts;
   }
   if (!stages.on_grid) {
     const double off = shareOffBeams(scan, options.sensor, stages.image, stages.projection.isUpsideDown());
     if (off > kMostOffBeams) {
-      doubts.push_back(percentText(off) + " of the points lie off the beams of the sensor model " +
-                       options.sensor.name + ": it may be another sensor, or the points in another frame");
+      doubts.push_back({Cause::SENSOR, percentText(off) + " of the points lie off the beams of the sensor model " +
+                                           options.sensor.name +
+                                           ": it may be another sensor, or the points in another frame"});
     }
   }
-  if (noise > kMostNoise * returns) doubts.push_back(percentText(noise / returns) + " of the points are noise");
+  if (noise > kMostNoise * returns)
+    doubts.push_back({Cause::SENSOR, percentText(noise / returns) + " of the points are noise"});
   if (ground < kLeastGround * returns && below > kLeastGround * returns) {
-    doubts.push_back(percentText(ground / returns) + " of the points are ground, where " + percentText(below / returns) +
-                     " lie below the sensor: it may be mounted in another way");
+    doubts.push_back({Cause::MOUNTING, percentText(ground / returns) + " of the points are ground, where " +
+                                           percentText(below / returns) +
+                                           " lie below the sensor: it may be mounted in another way"});
   }
   const double height_m = stages.ground_detection.sensorHeight();
   if (options.ground.rule == GroundRule::GROWING && ground > 0.0 &&
       (height_m < kLeastHeight_m || height_m > kGreatestHeight_m)) {
-    doubts.push_back("the ground lies " + metresText(height_m) +
-                     " below the origin of the points, which is unlikely: they may be in the frame of the vehicle");
+    doubts.push_back(
+        {Cause::HEIGHT,
+         "the ground lies " + metresText(height_m) +
+             " below the origin of the points, which is unlikely: they may be in the frame of the vehicle"});
   }
   if (const auto mounting = learnMounting(scan)) {
     SegmentationOptions seen = options;
     seen.mounting_pitch_deg = mounting->pitch_deg;
     seen.mounting_roll_deg = mounting->roll_deg;
-    const float cosine =
-        ScanProjection(seen).R_level_lidar.row(2).dot(stages.projection.R_level_lidar.row(2));
+    const float cosine = ScanProjection(seen).R_level_lidar.row(2).dot(stages.projection.R_level_lidar.row(2));
     constexpr float kSameLean = 0.966F;  // 15 degrees
     if (cosine < kSameLean) {
       std::ostringstream text;
       text.precision(0);
       text << std::fixed << "the ground leans as if the sensor were rolled by " << mounting->roll_deg
            << " degrees and pitched by " << mounting->pitch_deg;
-      doubts.push_back(text.str());
+      doubts.push_back({Cause::MOUNTING, text.str()});
     }
   }
   return doubts;

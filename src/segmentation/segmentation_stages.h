@@ -19,6 +19,8 @@ struct SegmentationStages {
   ScanProjection projection;
   bool on_grid = false;  ///< the sensor has no beams, or lies on its side: scans are segmented on `grid`
   SensorModel sensor;    ///< the beams as the rows of the image are: turned round where the sensor is upside down
+  /// Of the elevation of each column's lowest beam above the horizon; empty for a sensor that stands upright.
+  std::vector<float> lowest_tangents;
   RangeImage image;
   GroundGrid grid;
   GroundDetection ground_detection;

@@ -276,11 +276,24 @@ TEST_F(LocalizerTest, RefusesMapsOfOtherSegmentationUnlessAllowed) {
   expectThrows<std::invalid_argument>([&] { Localizer(made_with, other); },
                                       {"segmentation.sensor", "VLP-16", "HDL-64E"});
   other.segmentation = {};
-  other.segmentation.mounting_pitch_deg = 2.5;
-  expectThrows<std::invalid_argument>([&] { Localizer(made_with, other); }, {"mounting_pitch_deg = 2.5", "with 0"});
+  other.segmentation.ground.slope_deg = 2.5;
+  expectThrows<std::invalid_argument>([&] { Localizer(made_with, other); }, {"ground.slope_deg = 2.5", "with 10"});
   other.allow_other_segmentation = true;
   EXPECT_NO_THROW(Localizer(made_with, other));
   EXPECT_NO_THROW(Localizer(mapOf(streetCorner(1)), other)) << "of a map that does not know how it was made";
+}
+
+TEST_F(LocalizerTest, TakesMapsOfTheSameLidarMountedInAnotherWay) {
+  WeightedMapBuilder builder(1.0, SegmentationOptions());
+  addCloud(builder, streetCorner(1), Eigen::Isometry3d::Identity());
+  LocalizerOptions other;
+  other.segmentation.mounting_pitch_deg = 2.5;
+  other.segmentation.mounting_roll_deg = 180.0;
+  other.segmentation.ground.sensor_height_m = 1.2;
+  other.segmentation.min_range_m = 2.0;
+  other.segmentation.max_range_m = 80.0;
+  other.segmentation.vehicle_box_m = {-2.0, -1.0, -2.0, 1.0, 1.0, 0.0};
+  EXPECT_NO_THROW(Localizer(builder.build(), other));
 }
 
 TEST_F(LocalizerTest, TwoInTwoThreadsGiveTheSameBitsAsOneAfterTheOther) {

@@ -23,6 +23,9 @@ struct LearnedSensor {
 /// of them in one cloud, and a cloud in another frame have none.
 SAW_NDT_EXPORT LearnedSensor learnSensor(const ScanView& scan);
 
+/// The same from several scans, at least one: what most of them show, of as many the first.
+SAW_NDT_EXPORT LearnedSensor learnSensor(const std::vector<ScanView>& scans);
+
 /// How a sensor stands above the ground.
 struct LearnedMounting {
   double pitch_deg = 0.0;  ///< as SegmentationOptions::mounting_pitch_deg
@@ -44,8 +47,22 @@ SAW_NDT_EXPORT std::optional<LearnedMounting> learnMounting(const std::vector<Sc
 SAW_NDT_EXPORT SegmentationOptions withMounting(const SegmentationOptions& options, const LearnedMounting& mounting,
                                                 const ScanView& scan);
 
-/// What in a scan tells that it is segmented by wrong options: points off the beams, hardly any ground, most of it
-/// noise, an unlikely height of the sensor, another frame. A sentence for each, that says what was seen.
-SAW_NDT_EXPORT std::vector<std::string> segmentationDoubts(const ScanView& scan, const SegmentationOptions& options);
+/// What in a scan tells that it is segmented by wrong options.
+struct SegmentationDoubt {
+  /// What may be wrong.
+  enum class Cause {
+    SENSOR,     ///< SegmentationOptions::sensor: points off the beams, or most of them noise
+    MOUNTING,   ///< the angles of the mounting: hardly any ground, or ground that leans
+    HEIGHT,     ///< GroundOptions::sensor_height_m: an unlikely height, as of points in the frame of the vehicle
+    NO_RETURN,  ///< ranges and vehicle box: no point counts
+  };
+
+  Cause cause;
+  std::string seen;  ///< a sentence without its full stop
+};
+
+/// Segments a scan and tells what is doubtful about it.
+SAW_NDT_EXPORT std::vector<SegmentationDoubt> segmentationDoubts(const ScanView& scan,
+                                                                 const SegmentationOptions& options);
 
 }  // namespace saw_ndt
