@@ -84,7 +84,8 @@ void SegmentationArguments::addTo(AppOptions& app) {
       "returns (default: none)");
   app.addChoice("ground-rule", &ground_rule_, {toString(GroundRule::GROWING), toString(GroundRule::INCLINATION)},
                 "how ground is told: growing follows it outward column by column, inclination is the paper's rule");
-  app.addOption("slope-deg", &values_.ground.slope_deg, "DEGREES", "greatest slope of the ground");
+  app.addOption("slope-deg", &values_.ground.slope_deg, "DEGREES",
+                "greatest slope of the ground; more where it is not stated and the first scans show steeper ground");
 }
 
 bool SegmentationArguments::learnsSensor() const { return sensor_ == kAuto; }
@@ -144,7 +145,12 @@ SegmentationOptions SegmentationArguments::learnedFrom(const std::vector<ScanPoi
     }
     options = withMounting(options, stated_first, views.front());
   }
-  std::cerr << app_->name() << ": sensor: " << sensor_text << "; mounting: " << mountingText(options, mounting) << '\n';
+  const double slope_deg = options.ground.slope_deg;
+  const bool has_slope = app_->isGiven("slope-deg") || knowledge.of_map;
+  if (!has_slope && options.ground.rule == GroundRule::GROWING) options = withSlope(options, views);
+  std::cerr << app_->name() << ": sensor: " << sensor_text << "; mounting: " << mountingText(options, mounting);
+  if (options.ground.slope_deg != slope_deg) std::cerr << "; slopes up to " << options.ground.slope_deg << " degrees";
+  std::cerr << '\n';
   for (const SegmentationDoubt& doubt : segmentationDoubts(views.front(), options)) {
     warn(*app_, doubt.seen + "; see " + optionsFor(doubt.cause));
   }

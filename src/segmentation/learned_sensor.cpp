@@ -159,13 +159,19 @@ BeamGroups crowdedElevations(const ScanView& scan) {
   BeamGroups found;
   found.evidence = "elevations";
   const double least = total / 64.0 / 100.0;
-  double crowd = 0.0, sum = 0.0, used_bins = 0.0;
+  // Wider ones are of several beams.
+  constexpr double kWidestBeam_deg = 0.25;
+  constexpr double kMostWide = 0.1;
+  double crowd = 0.0, sum = 0.0, used_bins = 0.0, width_deg = 0.0, wide = 0.0;
   for (std::size_t bin = 0; bin <= kBins; ++bin) {
     if (bin < kBins && points[bin] > least) {
       crowd += points[bin];
       sum += sums[bin];
       used_bins += 1.0;
+      width_deg += kBin_deg;
     } else if (crowd > 0.0) {
+      if (width_deg > kWidestBeam_deg) wide += crowd;
+      width_deg = 0.0;
       BeamGroup group;
       group.number = found.count++;
       group.elevation_deg = sum / crowd;
@@ -176,7 +182,7 @@ BeamGroups crowdedElevations(const ScanView& scan) {
   // Elevations of any value fill the bins between the outermost.
   constexpr double kMostUsedShare = 0.5;
   constexpr std::size_t kLeastBeams = 4;
-  if (found.groups.size() < kLeastBeams) return {};
+  if (found.groups.size() < kLeastBeams || wide > kMostWide * total) return {};
   const double extent = (found.groups.back().elevation_deg - found.groups.front().elevation_deg) / kBin_deg;
   return used_bins < kMostUsedShare * extent ? found : BeamGroups{};
 }
@@ -192,8 +198,11 @@ LearnedSensor learnSensor(const ScanView& scan) {
   // Beams that nothing blurs tell more than an order in which those that see nothing are missing.
   const BeamGroups crowds = crowdedElevations(scan);
   if (!crowds.groups.empty()) return sensorOf(crowds, scan, known);
+  // Turns of a sensor without beams, or falls of some other order, are shorter.
+  constexpr std::size_t kLeastPointsOfBeam = 150;
   for (const BeamGroups& groups : candidates) {
-    if (groups.areBeams() && groups.areInOrder()) return sensorOf(groups, scan, known);
+    const bool are_long = groups.groups.size() * kLeastPointsOfBeam <= scan.size;
+    if (are_long && groups.areBeams() && groups.areInOrder()) return sensorOf(groups, scan, known);
   }
   LearnedSensor none;
   none.model = {kNoBeams, 1800, {}};

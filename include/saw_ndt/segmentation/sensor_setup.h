@@ -47,6 +47,10 @@ SAW_NDT_EXPORT std::optional<LearnedMounting> learnMounting(const std::vector<Sc
 SAW_NDT_EXPORT SegmentationOptions withMounting(const SegmentationOptions& options, const LearnedMounting& mounting,
                                                 const ScanView& scan);
 
+/// Options with a greater slope of the ground where one of some scans shows ground as steep: by each of a few degrees
+/// more it gains a lot of ground at first and then none. What grows on and on are other surfaces.
+SAW_NDT_EXPORT SegmentationOptions withSlope(const SegmentationOptions& options, const std::vector<ScanView>& scans);
+
 /// What in a scan tells that it is segmented by wrong options.
 struct SegmentationDoubt {
   /// What may be wrong.
