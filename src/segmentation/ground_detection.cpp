@@ -125,6 +125,12 @@ void GroundDetection::doubtFeet(const PixelImage& image, const SensorModel& sens
 void GroundDetection::takeBackDoubts(const PixelImage& image, const SensorModel& sensor,
                                      std::vector<StructuralLabel>& labels) {
   constexpr double kFarApart_deg = 0.6;
+  const auto is_far_below = [&](int row) {
+    return sensor.elevations_deg[row - 1] - sensor.elevations_deg[row] >= kFarApart_deg;
+  };
+  bool any = false;
+  for (int row = 1; row < image.rows(); ++row) any = any || is_far_below(row);
+  if (!any) return;
   // How far what is taken back may be from the ground before it, and a slope beyond.
   constexpr float kLevel_m = 0.1F;
   constexpr float kLevelSlope = 0.02F;
@@ -132,12 +138,12 @@ void GroundDetection::takeBackDoubts(const PixelImage& image, const SensorModel&
   last_range_.assign(columns, 0.0F);
   last_height_.assign(columns, -sensor_height_);
   for (int row = image.rows() - 1; row > 0; --row) {
-    const bool far_apart = sensor.elevations_deg[row - 1] - sensor.elevations_deg[row] >= kFarApart_deg;
+    const bool is_far = is_far_below(row);
     const std::size_t begin = static_cast<std::size_t>(row) * columns;
     for (std::size_t column = 0; column < columns; ++column) {
       StructuralLabel& label = labels[begin + column];
       const float range = image.horizontalRange()[begin + column], height = image.height()[begin + column];
-      if (far_apart && label == StructuralLabel::NOISE && states_[begin + column] >= kDoubtfulState &&
+      if (is_far && label == StructuralLabel::NOISE && states_[begin + column] >= kDoubtfulState &&
           std::abs(height - last_height_[column]) <= kLevel_m + kLevelSlope * (range - last_range_[column])) {
         label = StructuralLabel::GROUND;
       }

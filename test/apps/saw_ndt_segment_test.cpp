@@ -9,6 +9,7 @@
 #include "run_app_program.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/point_cloud_file.h"
+#include "saw_ndt/segmentation/scan_segmenter.h"
 #include "segmentation/synthetic_scan.h"
 
 namespace saw_ndt {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "saw_ndt/common/sensor_model.h"
 
 namespace saw_ndt {
@@ -26,6 +28,10 @@ SegmentationOptions unusualOptions() {
   SegmentationOptions options;
   options.sensor = {"Sensor = \"7\" of Zürich ", 777, {1.0 / 3.0, 0.1 + 0.2, -5e-324, -1e-300, -77.7}};
   options.mounting_pitch_deg = 2.0 / 3.0;
+  options.mounting_roll_deg = -100.0 / 3.0;
+  options.min_range_m = 0.3;
+  options.max_range_m = 1e2 / 3.0;
+  options.vehicle_box_m = {-1.1, -0.7, -2.2, 1.0 / 3.0, 0.7, 0.1};
   options.ground.rule = GroundRule::INCLINATION;
   options.ground.inclination_limit_deg = 10.1;
   options.ground.inclination_top_elevation_deg = -2.2;
@@ -100,14 +106,29 @@ TEST(MapMetadata, BeforeThereWereFeetNothingWasAFoot) {
   EXPECT_FALSE(firstDifference(*read.segmentation, options));
 }
 
+TEST(MapMetadata, BeforeThereWereRangesAllReturnsOfUprightSensorsCounted) {
+  std::string text = metadataText(originWith({}));
+  for (const char* line : {"mounting_roll_deg = 0\n", "min_range_m = 0\n", "max_range_m = inf\n", "vehicle_box_m = \n"})
+    text = replaced(text, line, "");
+  MapOrigin read;
+  ASSERT_FALSE(readMetadata(text, read));
+  ASSERT_TRUE(read.segmentation);
+  EXPECT_FALSE(firstDifference(*read.segmentation, SegmentationOptions()));
+}
+
 TEST(MapMetadata, AMissingOrMalformedKeyIsNamedWithItsPlace) {
   const std::string text = metadataText(originWith({}));
+  // Keys that files of earlier versions do not have.
+  const std::vector<std::string> may_lack = {"ground.foot_angle_deg", "ground.foot_height_m", "mounting_roll_deg",
+                                             "min_range_m",           "max_range_m",          "vehicle_box_m"};
   expectFault("", 0, "software_version");
   expectFault("software_version = 1\n", 0, "segmentation");
   for (std::size_t start = 0; start < text.size();) {
     const std::size_t end = text.find('\n', start) + 1;
     const std::string key = text.substr(start, text.find(" = ", start) - start);
-    expectFault(text.substr(0, start) + text.substr(end), 0, "does not give " + key);
+    if (std::find(may_lack.begin(), may_lack.end(), key) == may_lack.end()) {
+      expectFault(text.substr(0, start) + text.substr(end), 0, "does not give " + key);
+    }
     expectFault(text + text.substr(start, end - start), text.size(), key + " twice");
     start = end;
   }
