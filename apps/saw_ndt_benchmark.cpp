@@ -81,14 +81,15 @@ int main(int argc, char** argv) {
     options.drives = drivesOf(drives, !map_folders.empty());
     options.localizer.segmentation = segmentation.stated();
     options.localizer.alignment.threads = app.threads();
-    std::vector<saw_ndt::BenchmarkDrive> opened =
-        saw_ndt::checkedUsage([&] { return openDrives(folders, map_folders, bin_fields.value()); });
-    const std::vector<int> first_selected = saw_ndt::checkedUsage(
-        [&] { return saw_ndt::parseScanSelection(options.scans, opened.front().sequence.scanCount()); });
-    options.localizer.segmentation =
-        segmentation.learnedFrom(saw_ndt::firstScans(*opened.front().sequence.scans(first_selected)));
-    const saw_ndt::Benchmark benchmark =
-        saw_ndt::checkedUsage([&] { return saw_ndt::Benchmark(std::move(opened), options); });
+    const auto open = [&] {
+      return saw_ndt::checkedUsage(
+          [&] { return saw_ndt::Benchmark(openDrives(folders, map_folders, bin_fields.value()), options); });
+    };
+    open();  // what is wrong with the command line is said before scans are read
+    const saw_ndt::KittiSequence first(folders.front(), {}, bin_fields.value());
+    options.localizer.segmentation = segmentation.learnedFrom(
+        saw_ndt::firstScans(*first.scans(saw_ndt::parseScanSelection(options.scans, first.scanCount()))));
+    const saw_ndt::Benchmark benchmark = open();
     const saw_ndt::RunRecord record = saw_ndt::recordRun({argv, argv + argc}, app.threads());
 
     saw_ndt::OutputFolder folder(out_dir);

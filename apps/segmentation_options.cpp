@@ -41,6 +41,12 @@ std::string sensorText(const LearnedSensor& sensor) {
   return sensor.model.name + ", told by " + sensor.evidence;
 }
 
+std::string sensorNames() {
+  std::string names;
+  for (const std::string& name : SensorModel::names()) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
 std::string optionsFor(SegmentationDoubt::Cause cause) {
   switch (cause) {
     case SegmentationDoubt::Cause::SENSOR:
@@ -61,12 +67,10 @@ void SegmentationArguments::addTo(AppOptions& app) {
   app_ = &app;
   sensor_ = mounting_ = kAuto;
   ground_rule_ = toString(values_.ground.rule);
-  std::string names;
-  for (const std::string& name : SensorModel::names()) names += (names.empty() ? "" : ", ") + name;
   app.addOption("sensor", &sensor_, "NAME|FILE.json",
                 "beams and image width of the LiDAR: `auto` learns them from the first scans; a file like those of "
                 "share/saw_ndt/sensors; or one of " +
-                    names);
+                    sensorNames());
   app.addChoice("mounting", &mounting_, {kAuto, "stated"},
                 "auto learns from the ground of the first scans how the LiDAR leans and how high it is, as far as the "
                 "options below do not state it");
@@ -96,10 +100,12 @@ SegmentationOptions SegmentationArguments::stated() const {
   options.ground.rule =
       ground_rule_ == toString(GroundRule::INCLINATION) ? GroundRule::INCLINATION : GroundRule::GROWING;
   options.max_range_m = max_range_m_ == 0.0 ? std::numeric_limits<double>::infinity() : max_range_m_;
-  checkedUsage([&] {
+  try {
     if (!learnsSensor()) options.sensor = sensorModelOf(sensor_);
-    options.check();
-  });
+  } catch (const std::invalid_argument&) {
+    throw UsageError("option -sensor: '" + sensor_ + "' is none of auto, FILE.json, " + sensorNames());
+  }
+  checkedUsage([&] { options.check(); });
   return options;
 }
 
@@ -137,20 +143,26 @@ SegmentationOptions SegmentationArguments::learnedFrom(const std::vector<ScanPoi
     options.sensor = learned.model;
   }
   std::optional<LearnedMounting> mounting;
+  bool is_mounted_otherwise = false;
   if (learnsMounting() && (mounting = learnMounting(views))) {
     LearnedMounting stated_first = *mounting;
     if (has_angles || has_base) {
       stated_first.pitch_deg = options.mounting_pitch_deg;
       stated_first.roll_deg = options.mounting_roll_deg;
     }
+    const SegmentationOptions before = options;
     options = withMounting(options, stated_first, views.front());
+    is_mounted_otherwise = firstDifference(before, options).has_value();
   }
   const double slope_deg = options.ground.slope_deg;
   const bool has_slope = app_->isGiven("slope-deg") || knowledge.of_map;
   if (!has_slope && options.ground.rule == GroundRule::GROWING) options = withSlope(options, views);
-  std::cerr << app_->name() << ": sensor: " << sensor_text << "; mounting: " << mountingText(options, mounting);
-  if (options.ground.slope_deg != slope_deg) std::cerr << "; slopes up to " << options.ground.slope_deg << " degrees";
-  std::cerr << '\n';
+  const bool is_steeper = options.ground.slope_deg != slope_deg;
+  if (learnsSensor() || is_mounted_otherwise || is_steeper) {
+    std::cerr << app_->name() << ": sensor: " << sensor_text << "; mounting: " << mountingText(options, mounting);
+    if (is_steeper) std::cerr << "; slopes up to " << options.ground.slope_deg << " degrees";
+    std::cerr << '\n';
+  }
   for (const SegmentationDoubt& doubt : segmentationDoubts(views.front(), options)) {
     warn(*app_, doubt.seen + "; see " + optionsFor(doubt.cause));
   }

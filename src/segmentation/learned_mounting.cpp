@@ -204,7 +204,7 @@ SegmentationOptions withMounting(const SegmentationOptions& options, const Learn
     result.mounting_pitch_deg = mounting.pitch_deg;
     result.mounting_roll_deg = mounting.roll_deg;
   }
-  if (result.ground.sensor_height_m > 0.0) return result;
+  if (result.ground.sensor_height_m > 0.0 || result.ground.rule != GroundRule::GROWING) return result;
   ScanSegmenter segmenter(result);
   std::vector<StructuralLabel> labels;
   segmenter.segment(scan, labels);

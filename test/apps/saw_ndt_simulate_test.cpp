@@ -84,7 +84,7 @@ TEST_F(SimulateApp, WrongUsageIsNamedAndLeavesNothing) {
 
 TEST_F(SimulateApp, TakesBeamsFromAFileAndTheMountingOfTheLidar) {
   const auto sensor = folder.write("mine.json", R"({"name": "mine", "columns": 360, "elevations_deg": [2, -9, -20]})");
-  const std::string options = "-objects 0.3 -scans 1 -sensor " + quoted(sensor);
+  const std::string options = "-objects 0.3 -scans 2 -sensor " + quoted(sensor);
   const auto run = [&](const std::string& name, const std::string& more) {
     return runAppProgram(SAW_NDT_APP, quoted(folder.path() / name) + options + more);
   };

@@ -43,7 +43,7 @@ SAW_NDT_EXPORT std::optional<LearnedMounting> learnMounting(const std::vector<Sc
 
 /// Options with a mounting that has been learned, where it matters: the angles where the sensor leans by more than 5
 /// degrees, since up to that ground may as well be what leans; the height where it is not that which a segmenter finds
-/// in a scan by itself, as over the roof of a vehicle.
+/// in a scan by itself, as over the roof of a vehicle, and only for GroundRule::GROWING, which uses it.
 SAW_NDT_EXPORT SegmentationOptions withMounting(const SegmentationOptions& options, const LearnedMounting& mounting,
                                                 const ScanView& scan);
 
