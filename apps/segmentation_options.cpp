@@ -5,6 +5,7 @@
 #include <iostream>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 
 #include "report/sensor_model_file.h"
 #include "saw_ndt/common/geometry.h"
@@ -96,10 +97,14 @@ SegmentationOptions SegmentationArguments::stated() const {
   options.ground.rule =
       ground_rule_ == toString(GroundRule::INCLINATION) ? GroundRule::INCLINATION : GroundRule::GROWING;
   options.max_range_m = max_range_m_ == 0.0 ? std::numeric_limits<double>::infinity() : max_range_m_;
-  checkedUsage([&] {
-    if (!learnsSensor()) options.sensor = sensorModelOf(sensor_);
-    options.check();
-  });
+  if (!learnsSensor()) {
+    try {
+      options.sensor = sensorModelOf(sensor_);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(std::string("option -sensor: neither auto nor FILE.json; ") + error.what());
+    }
+  }
+  checkedUsage([&] { options.check(); });
   return options;
 }
 
