@@ -5,6 +5,7 @@
 #include <iostream>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 
 #include "report/sensor_model_file.h"
 #include "saw_ndt/common/geometry.h"

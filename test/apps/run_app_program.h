@@ -6,6 +6,7 @@
 #include <boost/process/system.hpp>
 #include <boost/program_options/parsers.hpp>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -35,6 +36,11 @@ inline AppResult runAppProgram(const std::string& program, const std::string& ar
     return content.str();
   };
   return {exit_code, output_file.empty() ? contentOf(out) : "", contentOf(err)};
+}
+
+/// What a program said on stderr but for the line that tells of the sensor and its mounting.
+inline std::string withoutSetup(const std::string& errors) {
+  return std::regex_replace(errors, std::regex("saw_ndt_\\w+: sensor: [^\n]*; mounting: [^\n]*\n"), "");
 }
 
 }  // namespace saw_ndt

@@ -169,7 +169,7 @@ TEST_F(SegmentApp, SaysWhatIsWrongAndWritesNothing) {
     std::string reason;
   } cases[] = {
       {quoted("a.bin"), 2, "missing OUT.pcd"},
-      {good + "-sensor LMS", 2, "'LMS' is none of"},
+      {good + "-sensor LMS", 2, "option -sensor: neither auto nor FILE.json; sensor model \"LMS\": must be one of"},
       {good + "-mounting-pitch-deg 120", 2, "mounting_pitch_deg = 120"},
       {quoted("none.bin") + quoted("out.pcd"), 1, "none.bin: No such file"},
       {quoted("short.bin") + quoted("out.pcd"), 1, "short.bin: offset 0"},
@@ -185,6 +185,101 @@ TEST_F(SegmentApp, SaysWhatIsWrongAndWritesNothing) {
     EXPECT_EQ(result.output, "");
   }
   EXPECT_EQ(folder.entryCount(), 3U);
+}
+
+/// The same scan by a LiDAR upside down.
+pcl::PointCloud<pcl::PointXYZ> flipped(pcl::PointCloud<pcl::PointXYZ> scan) {
+  for (pcl::PointXYZ& point : scan) {
+    point.y = -point.y;
+    point.z = -point.z;
+  }
+  return scan;
+}
+
+TEST_F(SegmentApp, SaysWhatItLearnedAndWhatIsStated) {
+  writeScan("a.bin", roadAndWall());
+  const std::string good = quoted("a.bin") + quoted("out.pcd");
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "sensor: HDL-64E, told by elevations; mounting: level, 1.73 m above the ground\n"},
+      {"-sensor auto -mounting auto",
+       "sensor: HDL-64E, told by elevations; mounting: level, 1.73 m above the ground\n"},
+      {"-sensor HDL-64E", "sensor: HDL-64E; mounting: level, 1.73 m above the ground\n"},
+      {"-mounting stated", "sensor: HDL-64E, told by elevations; mounting: level\n"},
+      {"-mounting stated -sensor-height 1.8",
+       "sensor: HDL-64E, told by elevations; mounting: level, 1.80 m above the ground\n"},
+      {"-sensor no-rings -mounting-pitch-deg 2",
+       "sensor: no-rings; mounting: pitch 2.0 and roll 0.0 degrees, 1.73 m above the ground\n"},
+  };
+  for (const auto& [arguments, said] : cases) {
+    const AppResult result = run(good + arguments);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.errors, "saw_ndt_segment: " + said) << arguments;
+  }
+}
+
+TEST_F(SegmentApp, TakesASensorFromAFile) {
+  const SensorModel mine = SensorModel::evenlySpaced("mine", 21, 900, 4.0, -26.0);
+  writeScan("a.bin", ringOrderedScan(mine, [&](int row, int) { return rangeToFlatGround(mine, row, 40.0); }));
+  nlohmann::json json = {{"name", mine.name}, {"columns", mine.columns}, {"elevations_deg", mine.elevations_deg}};
+  folder.write("mine.json", json.dump());
+  const AppResult result = run(quoted("a.bin") + quoted("out.pcd") + "-sensor " + quoted("mine.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "saw_ndt_segment: sensor: mine; mounting: level, 1.73 m above the ground\n");
+  json.erase("columns");
+  folder.write("lacks.json", json.dump());
+  for (const auto& [file, reason] : {std::pair("lacks.json", "columns"), {"none.json", "No such file"}}) {
+    const AppResult failed = run(quoted("a.bin") + quoted("no.pcd") + "-sensor " + quoted(file));
+    EXPECT_EQ(failed.exit_code, 1);
+    EXPECT_NE(failed.errors.find(file), std::string::npos) << failed.errors;
+    EXPECT_NE(failed.errors.find(reason), std::string::npos) << failed.errors;
+  }
+}
+
+TEST_F(SegmentApp, NamesTheSegmentationOptionThatIsWrong) {
+  writeScan("a.bin", roadAndWall());
+  const std::pair<std::string, std::string> cases[] = {
+      {"-sensor LMS", "-sensor"},
+      {"-sensor os1", "-sensor"},
+      {"-mounting sideways", "-mounting"},
+      {"-mounting-roll-deg 200", "mounting_roll_deg = 200"},
+      {"-mounting-pitch-deg -91", "mounting_pitch_deg = -91"},
+      {"-sensor-height -1", "sensor_height_m = -1"},
+      {"-min-range -1", "min_range_m = -1"},
+      {"-min-range 5 -max-range 4", "max_range_m = 4"},
+      {"-vehicle-box 1,2,3,4,5", "vehicle_box_m.size() = 5"},
+      {"-vehicle-box 1,2,3,4,5,x", "-vehicle-box"},
+      {"-vehicle-box 1,1,1,2,0,2", "vehicle_box_m"},
+      {"-ground-rule best", "-ground-rule"},
+      {"-slope-deg 61", "slope_deg = 61"},
+  };
+  for (const auto& [arguments, named] : cases) {
+    const AppResult result = run(quoted("a.bin") + quoted("out.pcd") + arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    EXPECT_NE(result.errors.find(named), std::string::npos) << arguments << ": " << result.errors;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  }
+  EXPECT_EQ(folder.entryCount(), 1U);
+}
+
+TEST_F(SegmentApp, AScanUpsideDownIsSegmentedAsUprightOrWarnedOf) {
+  const pcl::PointCloud<pcl::PointXYZ> scan = roadAndWall();
+  writeScan("up.bin", scan);
+  writeScan("down.bin", flipped(scan));
+  writeLabels("a.label", scan);
+  const auto f1Of = [&](const std::string& file, const std::string& options) {
+    const AppResult result = run(quoted(file) + quoted("out.pcd") + "-labels " + quoted("a.label") + options);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.errors.find("warning"), std::string::npos) << result.errors;
+    return nlohmann::json::parse(result.output).at("f1").get<double>();
+  };
+  EXPECT_NEAR(f1Of("down.bin", ""), f1Of("up.bin", ""), 0.01);
+  const AppResult stated = run(quoted("down.bin") + quoted("out.pcd") + "-mounting stated -sensor HDL-64E");
+  EXPECT_EQ(stated.exit_code, 0);
+  EXPECT_NE(stated.errors.find("saw_ndt_segment: warning: the ground leans as if the sensor were rolled by "),
+            std::string::npos)
+      << stated.errors;
+  EXPECT_NE(stated.errors.find("; see -mounting auto"), std::string::npos) << stated.errors;
+  EXPECT_NE(stated.errors.find("; see -sensor\n"), std::string::npos) << stated.errors;
 }
 
 TEST_F(SegmentApp, OfARealScan) {
