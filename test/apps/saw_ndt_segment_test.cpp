@@ -169,7 +169,7 @@ TEST_F(SegmentApp, SaysWhatIsWrongAndWritesNothing) {
     std::string reason;
   } cases[] = {
       {quoted("a.bin"), 2, "missing OUT.pcd"},
-      {good + "-sensor LMS", 2, "option -sensor: neither auto nor FILE.json; sensor model \"LMS\": must be one of"},
+      {good + "-sensor LMS", 2, "option -sensor: 'LMS' is none of auto, FILE.json, "},
       {good + "-mounting-pitch-deg 120", 2, "mounting_pitch_deg = 120"},
       {quoted("none.bin") + quoted("out.pcd"), 1, "none.bin: No such file"},
       {quoted("short.bin") + quoted("out.pcd"), 1, "short.bin: offset 0"},
