@@ -1,5 +1,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -37,8 +38,6 @@ struct Plane {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-/// Some of the returns that are near, as many from everywhere: of cells of a metre no more than a few each, so that the
-/// dense rings around the sensor are not all that counts.
 Points nearReturns(const ScanView& scan) {
   Points near;
   for (std::size_t i = 0; i < scan.size; ++i) {
@@ -46,19 +45,31 @@ Points nearReturns(const ScanView& scan) {
     const float range = point.norm();
     if (range >= kNearest_m && range <= kFarthest_m) near.emplace_back(point);
   }
+  return near;
+}
+
+/// Some of them, as many from everywhere: of cells of a metre one each, then a second one each and so on, so that what
+/// the sensor sees densely, such as the rings around it, walls or a ramp ahead, is not all that counts.
+Points spreadOut(Points near) {
   std::mt19937 random(1);
   std::shuffle(near.begin(), near.end(), random);
   constexpr int kSide = 2 * static_cast<int>(kFarthest_m) + 1;
-  constexpr int kMostOfCell = 8;
+  constexpr std::size_t kMostOfCell = 8;
   std::vector<std::uint8_t> taken(static_cast<std::size_t>(kSide) * kSide * kSide, 0);
-  Points spread;
+  std::array<Points, kMostOfCell> turns;  // the first point of each cell, the second ones and so on
   for (const Eigen::Vector3f& point : near) {
     const Eigen::Vector3i cell = (point.array() + kFarthest_m).floor().cast<int>().min(kSide - 1);
     std::uint8_t& count = taken[static_cast<std::size_t>((cell.x() * kSide + cell.y()) * kSide + cell.z())];
     if (count == kMostOfCell) continue;
+    turns[count].push_back(point);
     ++count;
-    spread.push_back(point);
-    if (spread.size() == kMostPoints) break;
+  }
+  Points spread;
+  for (Points& turn : turns) {
+    // Points of dense cells come first.
+    std::shuffle(turn.begin(), turn.end(), random);
+    const std::size_t wanted = std::min(turn.size(), kMostPoints - spread.size());
+    spread.insert(spread.end(), turn.begin(), turn.begin() + static_cast<std::ptrdiff_t>(wanted));
   }
   return spread;
 }
@@ -140,7 +151,8 @@ double medianOf(std::vector<double> values) {
 }  // namespace
 
 std::optional<LearnedMounting> learnMounting(const ScanView& scan) {
-  const Points points = nearReturns(scan);
+  const Points returns = nearReturns(scan);
+  const Points points = spreadOut(returns);
   constexpr std::size_t kLeastPoints = 100;
   if (points.size() < kLeastPoints) return std::nullopt;
   std::mt19937 random(2);
@@ -165,7 +177,7 @@ std::optional<LearnedMounting> learnMounting(const ScanView& scan) {
     best = plane;
   }
   constexpr int kRefinements = 5;
-  for (int i = 0; i < kRefinements && best; ++i) best = fitted(*best, points);
+  for (int i = 0; i < kRefinements && best; ++i) best = fitted(*best, returns);
   if (!best || !mayBeGround(*best)) return std::nullopt;
   const Support support = supportOf(*best, points);
   if (support.on < kLeastInlierShare * static_cast<double>(points.size()) || 2 * support.behind > support.on) {

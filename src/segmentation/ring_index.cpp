@@ -183,7 +183,12 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
     const std::size_t step = std::max<std::size_t>(1, (end - runs_[run].begin) / kSamplesOfRun);
     samples_.clear();
     samples_.reserve(2 * kSamplesOfRun);
-    for (std::size_t i = runs_[run].begin; i < end; i += step) {
+    // A run of more points than a ring has may be a scan in firing order. Samples at even distances would then all be
+    // of one beam where the distance is a multiple of the number of beams.
+    constexpr std::size_t kPrime = 7919;
+    const bool is_long = end - runs_[run].begin > 2 * static_cast<std::size_t>(sensor.columns);
+    for (std::size_t k = 0; runs_[run].begin + k * step < end; ++k) {
+      const std::size_t i = std::min(end - 1, runs_[run].begin + k * step + (is_long ? k * kPrime % step : 0));
       if (points.range[i] > 0.0F) samples_.push_back(points.elevationSine(scan, i));
     }
     if (samples_.empty()) samples_.push_back(0.0F);
