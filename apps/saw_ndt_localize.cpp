@@ -42,7 +42,7 @@ saw_ndt::NdtTarget loadTarget(const std::string& file, const saw_ndt::Localizati
 int main(int argc, char** argv) {
   std::string sequence_folder, map_file, out_dir, poses_file, scans = ":";
   double skip_s = 3.0;
-  std::string initial_pose;
+  std::string initial_pose, motion_compensation = "auto";
   std::vector<double> base_lidar(6, 0.0);
   saw_ndt::LocalizerOptions options;
   double initial_radius_m = kSigmas * options.prediction.initial_sigma_m;
@@ -95,6 +95,8 @@ int main(int argc, char** argv) {
                 "a scan moved farther than this from its predicted pose is rejected, unless that is as uncertain");
   app.addOption("max-correction-deg", &options.acceptance.max_correction_deg, "DEGREES",
                 "a scan turned farther than this from its predicted pose is rejected, unless that is as uncertain");
+  app.addChoice("motion-compensation", &motion_compensation, {"auto", "off", "times", "counterclockwise", "clockwise"},
+                "x");
   segmentation.addTo(app);
   app.addFlag("allow-other-segmentation", &options.allow_other_segmentation,
               "go on where the scans of the map were segmented by other options, as those of another LiDAR");
@@ -106,6 +108,11 @@ int main(int argc, char** argv) {
     options.alignment.threads = app.threads();
     options.T_base_lidar = saw_ndt::transformOf(base_lidar);
     options.search = !no_search;
+    for (const saw_ndt::MotionCompensation c :
+         {saw_ndt::MotionCompensation::OFF, saw_ndt::MotionCompensation::FROM_TIMES,
+          saw_ndt::MotionCompensation::FROM_AZIMUTH_COUNTERCLOCKWISE,
+          saw_ndt::MotionCompensation::FROM_AZIMUTH_CLOCKWISE})
+      if (motion_compensation == toString(c)) options.motion_compensation = c;
     options.prediction.initial_sigma_m = initial_radius_m / kSigmas;
     options.prediction.initial_sigma_deg = initial_yaw_range_deg / kSigmas;
     saw_ndt::checkedUsage([&] {

@@ -9,7 +9,9 @@
 
 #include "common/executor.h"
 #include "common/stopwatch.h"
+#include "localization/motion_compensation.h"
 #include "localization/pose_finder.h"
+#include "localization/scan_motion.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
@@ -27,6 +29,7 @@ ScanPreparationOptions preparationOptions(const LocalizerOptions& options) {
   preparation.confidence = options.method.voxels.confidence;
   preparation.source_voxel_size_m = options.source_voxel_size_m;
   preparation.T_base_lidar = options.T_base_lidar;
+  preparation.motion_compensation = options.motion_compensation;
   preparation.threads = options.alignment.threads;
   return preparation;
 }
@@ -76,6 +79,7 @@ void LocalizerOptions::check() const {
   alignment.check();
   acceptance.check();
   global_search.check();
+  checkOption(scan_period_s >= 0.0 && std::isfinite(scan_period_s), "scan_period_s", scan_period_s, "0 or more");
   checkOption(search_budget_ms > 0.0, "search_budget_ms", search_budget_ms, "positive");
   preparationOptions(*this).check();
 }
@@ -90,13 +94,36 @@ Localizer::Localizer(const NdtTarget& target, const LocalizerOptions& options)
     : options_(withMethod(options)),
       preparation_(preparationOptions(options_)),
       prediction_(options.prediction),
-      finder_(std::make_unique<PoseFinder>(alignerTo(target, options_), target, options_)) {}
+      finder_(std::make_unique<PoseFinder>(alignerTo(target, options_), target, options_)),
+      moving_(makeMoving(options_)) {}
 
 Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
     : options_(withMethod(options)),
       preparation_(preparationOptions(options_)),
       prediction_(options.prediction),
-      finder_(std::make_unique<PoseFinder>(std::move(aligner), options_)) {}
+      finder_(std::make_unique<PoseFinder>(std::move(aligner), options_)),
+      moving_(makeMoving(options_)) {}
+
+// A scan on its way through localize().
+struct Localizer::ScanInWork {
+  Stopwatch since_start;
+  double stamp_s = 0.0;
+  UncertainPose predicted;
+  bool has_position = false;   // the prediction was corrected by a measured one
+  bool without_track = false;  // what is known of the vehicle does not help
+};
+
+// What is needed where the motion of the LiDAR skews scans.
+struct Localizer::Moving {
+  explicit Moving(const LocalizerOptions& options) : motion(options.prediction, options.scan_period_s) {}
+
+  ScanMotion motion;
+  MovingSource source;
+};
+
+std::unique_ptr<Localizer::Moving> Localizer::makeMoving(const LocalizerOptions& options) {
+  return options.motion_compensation != MotionCompensation::OFF ? std::make_unique<Moving>(options) : nullptr;
+}
 
 // A search in a thread of its own.
 struct Localizer::OngoingSearch {
@@ -124,19 +151,23 @@ const char* toString(SearchExtent extent) {
 void Localizer::setUnknownPose() {
   if (!finder_->canSearch()) throw std::logic_error("setUnknownPose: there is no search, or no target to search in");
   prediction_.resetUnknown();
+  if (moving_) moving_->motion.forget();
   if (ongoing_search_) ongoing_search_->outdated = true;
 }
 
 void Localizer::setInitialPose(const Eigen::Isometry3d& T_map_base) {
   prediction_.reset(T_map_base);
+  if (moving_) moving_->motion.forget();
   if (ongoing_search_) ongoing_search_->outdated = true;
 }
 
+PoseExpectation Localizer::expectation(const UncertainPose& predicted, double stamp_s) const {
+  return finder_->judge().expect(predicted.T_map_base, predicted.covariance, prediction_.state(), stamp_s,
+                                 options_.prediction.max_turn_rate_radps);
+}
+
 PoseAttempt Localizer::find(const SourcePoints& source, const UncertainPose& predicted, double stamp_s) {
-  const TrackState& track = prediction_.state();
-  const PoseExpectation expectation = finder_->judge().expect(predicted.T_map_base, predicted.covariance, track,
-                                                              stamp_s, options_.prediction.max_turn_rate_radps);
-  return finder_->find(source, expectation, track);
+  return finder_->find(source, expectation(predicted, stamp_s), prediction_.state());
 }
 
 // Within the budget; what is found later is where the vehicle was, from which the next scan goes on.
@@ -200,36 +231,126 @@ UncertainPose Localizer::accept(const PoseAttempt& found, double stamp_s,
   return {prediction_.state().T_map_base, prediction_.state().covariance};
 }
 
+PoseAttempt Localizer::locate(const SourcePoints& source, ScanInWork& scan) {
+  PoseAttempt found = find(source, scan.predicted, scan.stamp_s);
+  if (!found.accepted() && scan.has_position && !scan.without_track) {
+    // The position may be an outlier that nobody could tell.
+    const PoseAttempt other =
+        find(source, {prediction_.predict(scan.stamp_s), prediction_.predictedCovariance(scan.stamp_s)}, scan.stamp_s);
+    if (other.accepted()) found = other;
+  }
+  const bool is_lost = prediction_.state().isLost() || !PoseFinder::isInReach(scan.predicted.covariance);
+  if (is_lost && finder_->isWorthSearching(found, prediction_.state())) {
+    const PoseAttempt other = searchEverywhere(source, scan.stamp_s, scan.since_start.milliseconds());
+    found.search = other.search;
+    if (other.accepted() || scan.without_track) found = other;
+  } else if (ongoing_search_) {
+    ongoing_search_->outdated = true;
+  }
+  return found;
+}
+
+// The found pose as it is by another motion, found again from a start.
+PoseAttempt Localizer::compensatedAgain(const PoseAttempt& found, const Eigen::Isometry3d& T_map_base_start,
+                                        const BodyMotion& motion, const ScanInWork& scan) {
+  const bool is_expected = found.search != SearchExtent::EVERYWHERE;
+  const PoseExpectation expected = expectation(scan.predicted, scan.stamp_s);
+  PoseAttempt again = finder_->findFrom(moving_->source.compensatedBy(motion), T_map_base_start,
+                                        is_expected ? &expected : nullptr, prediction_.state());
+  again.search = found.search;
+  return again;
+}
+
+// Tries how fast the vehicle may be going straight on: that which most points beside the ground fit.
+PoseAttempt Localizer::withBestSpeed(const PoseAttempt& found, const ScanInWork& scan, BodyMotion& motion) {
+  constexpr double kFastest_mps = 40.0;
+  constexpr double kStep_mps = 8.0;
+  constexpr int kFinerSteps = 2;
+  struct Trial {
+    double speed_mps = 0.0;
+    double fit = -1.0;
+    Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
+  };
+  const auto tried = [&](double speed_mps, const Eigen::Isometry3d& start) {
+    const BodyMotion straight{speed_mps * Eigen::Vector3d::UnitX()};
+    const AlignmentResult alignment = finder_->align(moving_->source.compensatedBy(straight), start);
+    const double fit = alignment.converged() ? alignment.likelihoods.unweighted * alignment.overlap : -1.0;
+    return Trial{speed_mps, fit, alignment.T_map_source};
+  };
+  Trial best{0.0, -1.0, found.alignment.T_map_source};
+  Eigen::Isometry3d start = best.T_map_base;
+  for (double speed_mps = 0.0; speed_mps <= kFastest_mps; speed_mps += kStep_mps) {
+    const Trial trial = tried(speed_mps, start);
+    if (getenv("DBG")) fprintf(stderr, "speed %g fit %g\n", trial.speed_mps, trial.fit);
+    if (trial.fit > best.fit) best = trial;
+    if (trial.fit >= 0.0) start = trial.T_map_base;
+  }
+  double step_mps = kStep_mps;
+  for (int finer = 0; finer < kFinerSteps; ++finer) {
+    step_mps *= 0.5;
+    const Trial middle = best;
+    for (const double speed_mps : {middle.speed_mps - step_mps, middle.speed_mps + step_mps}) {
+      const Trial trial = tried(speed_mps, middle.T_map_base);
+      if (getenv("DBG")) fprintf(stderr, "speed %g fit %g\n", trial.speed_mps, trial.fit);
+      if (trial.fit > best.fit) best = trial;
+    }
+  }
+  if (best.fit < 0.0) return found;
+  motion = {best.speed_mps * Eigen::Vector3d::UnitX()};
+  const PoseAttempt again = compensatedAgain(found, best.T_map_base, motion, scan);
+  return again.accepted() || !found.accepted() ? again : found;
+}
+
+// By the motion that is expected and, where that turns out to be another, by what was found.
+PoseAttempt Localizer::locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan) {
+  constexpr double kSettledShift_m = 0.01;
+  constexpr int kMostRepetitions = 2;
+  MovingSource& source = moving_->source;
+  source.take(measured, preparation_.times_s());
+  if (!source.hasTimes()) return locate(measured, scan);
+  const TrackState& track = prediction_.state();
+  const std::optional<BodyMotion> expected = moving_->motion.expected(track, priors);
+  BodyMotion motion = expected.value_or(BodyMotion());
+  PoseAttempt found = locate(source.compensatedBy(motion), scan);
+  const bool is_unknown = !expected || (found.search == SearchExtent::EVERYWHERE && !priors.motion);
+  if (is_unknown && found.alignment.converged()) found = withBestSpeed(found, scan, motion);
+  for (int k = 0; k < kMostRepetitions && found.accepted() && found.search != SearchExtent::EVERYWHERE; ++k) {
+    const std::optional<BodyMotion> moved = moving_->motion.motionTo(found.T_map_base, track);
+    if (!moved || priors.motion) break;
+    // Points moved too far on the whole have set the pose back, of which the motion then tells too little.
+    const double share = 1.0 / (1.0 + source.meanTime_s() / *moving_->motion.elapsed_s(track));
+    BodyMotion better = motion;
+    better.velocity_mps += share * (moved->velocity_mps - motion.velocity_mps);
+    better.turn_rate_radps += share * (moved->turn_rate_radps - motion.turn_rate_radps);
+    if (shiftBetween(better, motion, source.reach_s()) < kSettledShift_m) break;
+    const PoseAttempt again = compensatedAgain(found, found.alignment.T_map_source, better, scan);
+    if (!again.accepted()) break;
+    motion = better;
+    found = again;
+  }
+  if (found.accepted()) moving_->motion.learn(motion);
+  return found;
+}
+
 LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, const ScanPriors& priors) {
-  const internal::Stopwatch total;
+  ScanInWork work;
   const internal::HelperSession session(options_.alignment.threads);
   LocalizationResult result;
   result.stamp_s = stamp_s;
   prediction_.move(priors.motion);
-  bool without_track = !prediction_.state().pose_known;
-  const UncertainPose predicted = predictedPose(stamp_s, priors.position, without_track);
-  result.T_map_base_predicted = predicted.T_map_base;
-  const SourcePoints& source = preparation_.prepare(scan);
+  bool& without_track = work.without_track;
+  without_track = !prediction_.state().pose_known;
+  work.stamp_s = stamp_s;
+  work.has_position = priors.position.has_value();
+  work.predicted = predictedPose(stamp_s, priors.position, without_track);
+  result.T_map_base_predicted = work.predicted.T_map_base;
+  const SourcePoints& source = preparation_.prepare(scan, moving_ ? moving_->motion.begin(stamp_s) : ScanTiming());
   result.source_points = source.size();
   result.times.segment_ms = preparation_.segmentMilliseconds();
   result.times.filter_ms = preparation_.filterMilliseconds();
 
   const internal::Stopwatch alignment;
-  PoseAttempt found = find(source, predicted, stamp_s);
-  if (!found.accepted() && priors.position && !without_track) {
-    // The position may be an outlier that nobody could tell.
-    const PoseAttempt other =
-        find(source, {prediction_.predict(stamp_s), prediction_.predictedCovariance(stamp_s)}, stamp_s);
-    if (other.accepted()) found = other;
-  }
-  const bool is_lost = prediction_.state().isLost() || !PoseFinder::isInReach(predicted.covariance);
-  if (is_lost && finder_->isWorthSearching(found, prediction_.state())) {
-    const PoseAttempt other = searchEverywhere(source, stamp_s, total.milliseconds());
-    found.search = other.search;
-    if (other.accepted() || without_track) found = other;
-  } else if (ongoing_search_) {
-    ongoing_search_->outdated = true;
-  }
+  const PoseAttempt found = moving_ ? locateMoving(source, priors, work) : locate(source, work);
   result.times.align_ms = alignment.milliseconds();
 
   result.alignment = found.alignment;
@@ -250,7 +371,7 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
     prediction_.reject(stamp_s, found.search == SearchExtent::EVERYWHERE);
   }
   result.track = prediction_.state();
-  result.times.total_ms = total.milliseconds();
+  result.times.total_ms = work.since_start.milliseconds();
   return result;
 }
 

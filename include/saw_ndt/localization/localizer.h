@@ -22,6 +22,7 @@ namespace saw_ndt {
 
 namespace internal {
 class PoseFinder;
+struct BodyMotion;
 struct PoseAttempt;
 }  // namespace internal
 
@@ -30,6 +31,12 @@ struct SAW_NDT_EXPORT LocalizerOptions {
   SegmentationOptions segmentation;
   double source_voxel_size_m = 0.2;  ///< edge of the voxels that thin a scan; 0 keeps every point
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< mounting of the LiDAR on the vehicle
+  /// Where scans are skewed by the motion of the LiDAR: how points are told when they were measured. They are
+  /// registered as seen at the stamp, by the motion of ScanPriors where that is given, else by the predicted one, and
+  /// again by that found if it moves points by a centimetre more. Where no motion is known yet, the speed straight on
+  /// is tried out.
+  MotionCompensation motion_compensation = MotionCompensation::OFF;
+  double scan_period_s = 0.0;  ///< how long a turn of the LiDAR takes, where azimuths tell times; 0: from the stamps
   MotionPredictionOptions prediction;
   AlignmentOptions alignment;  ///< what LocalizationMethod has as well is the method's
   AcceptanceOptions acceptance;
@@ -140,16 +147,28 @@ class SAW_NDT_EXPORT Localizer {
   MotionPrediction prediction_;
   UncertainPose predictedPose(double stamp_s, const std::optional<MeasuredPosition>& position,
                               bool& without_track) const;
+  PoseExpectation expectation(const UncertainPose& predicted, double stamp_s) const;
   internal::PoseAttempt find(const SourcePoints& source, const UncertainPose& predicted, double stamp_s);
   UncertainPose accept(const internal::PoseAttempt& found, double stamp_s,
                        const std::optional<MeasuredPosition>& position, bool without_track);
 
   internal::PoseAttempt searchEverywhere(const SourcePoints& source, double stamp_s, double elapsed_ms);
 
+  struct ScanInWork;
   struct OngoingSearch;
+  struct Moving;
+
+  static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options);
+  internal::PoseAttempt locate(const SourcePoints& source, ScanInWork& scan);
+  internal::PoseAttempt locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan);
+  internal::PoseAttempt withBestSpeed(const internal::PoseAttempt& found, const ScanInWork& scan,
+                                      internal::BodyMotion& motion);
+  internal::PoseAttempt compensatedAgain(const internal::PoseAttempt& found, const Eigen::Isometry3d& T_map_base_start,
+                                         const internal::BodyMotion& motion, const ScanInWork& scan);
 
   std::unique_ptr<internal::PoseFinder> finder_;
   std::unique_ptr<OngoingSearch> ongoing_search_;
+  std::unique_ptr<Moving> moving_;  // null: scans are taken as they are
 };
 
 }  // namespace saw_ndt

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "localization/motion_compensation.h"
+#include "saw_ndt/localization/motion_prediction.h"
+#include "saw_ndt/localization/scan_preparation.h"
+
+namespace saw_ndt::internal {
+
+/// What is known of the motion of a vehicle during the scans that follow it.
+class ScanMotion {
+ public:
+  /// @param period_s  how long a turn of the LiDAR takes; 0: not known
+  ScanMotion(const MotionPredictionOptions& limits, double period_s) : limits_(limits), period_(period_s) {}
+
+  /// The next scan is taken at a stamp.
+  ScanTiming begin(double stamp_s);
+  /// Another vehicle, or another place: what was learned of the motion does not hold any more.
+  void forget() { learned_.reset(); }
+
+  /// The motion during the scan of begin(): of odometry where that is given, else of the track, else what was learned
+  /// at its last pose.
+  std::optional<BodyMotion> expected(const TrackState& track, const ScanPriors& priors) const;
+  /// The motion that leads from the last pose of a track to one of the scan of begin(). Nothing where they are too far
+  /// apart in time, or there is no last pose that was found.
+  std::optional<BodyMotion> motionTo(const Eigen::Isometry3d& T_map_base, const TrackState& track) const;
+  /// From the last pose of a track to the scan of begin() (s), where motionTo() tells.
+  std::optional<double> elapsed_s(const TrackState& track) const;
+
+  /// The scan of begin() was accepted as taken in this motion.
+  void learn(const BodyMotion& motion);
+
+ private:
+  BodyMotion bounded(BodyMotion motion) const;
+
+  struct LearnedMotion {
+    double stamp_s;
+    BodyMotion motion;
+  };
+
+  MotionPredictionOptions limits_;
+  ScanPeriod period_;
+  std::optional<double> stamp_s_;
+  std::optional<double> stamp_before_s_;
+  std::optional<LearnedMotion> learned_;
+};
+
+}  // namespace saw_ndt::internal
