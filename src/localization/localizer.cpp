@@ -10,8 +10,8 @@
 #include "common/executor.h"
 #include "common/stopwatch.h"
 #include "localization/motion_compensation.h"
+#include "localization/motion_knowledge.h"
 #include "localization/pose_finder.h"
-#include "localization/scan_motion.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
@@ -45,6 +45,11 @@ LocalizerOptions withMethod(LocalizerOptions options) {
   options.alignment.evaluate_likelihoods = true;
   options.alignment.min_overlap = options.acceptance.min_overlap;
   return options;
+}
+
+BodyMotion mixed(const BodyMotion& a, const BodyMotion& b, double share_of_b) {
+  return {a.velocity_mps + share_of_b * (b.velocity_mps - a.velocity_mps),
+          a.turn_rate_radps + share_of_b * (b.turn_rate_radps - a.turn_rate_radps)};
 }
 
 void requireSegmentedAlike(const MapOrigin& origin, const LocalizerOptions& options) {
@@ -117,7 +122,7 @@ struct Localizer::ScanInWork {
 struct Localizer::Moving {
   explicit Moving(const LocalizerOptions& options) : motion(options.prediction, options.scan_period_s) {}
 
-  ScanMotion motion;
+  MotionKnowledge motion;
   MovingSource source;
 };
 
@@ -252,7 +257,7 @@ PoseAttempt Localizer::locate(const SourcePoints& source, ScanInWork& scan) {
 
 // The found pose as it is by another motion, found again from a start.
 PoseAttempt Localizer::compensatedAgain(const PoseAttempt& found, const Eigen::Isometry3d& T_map_base_start,
-                                        const BodyMotion& motion, const ScanInWork& scan) {
+                                        const ScanMotion& motion, const ScanInWork& scan) {
   const bool is_expected = found.search != SearchExtent::EVERYWHERE;
   const PoseExpectation expected = expectation(scan.predicted, scan.stamp_s);
   PoseAttempt again = finder_->findFrom(moving_->source.compensatedBy(motion), T_map_base_start,
@@ -261,42 +266,58 @@ PoseAttempt Localizer::compensatedAgain(const PoseAttempt& found, const Eigen::I
   return again;
 }
 
-// Tries how fast the vehicle may be going straight on: that which most points beside the ground fit.
-PoseAttempt Localizer::withBestSpeed(const PoseAttempt& found, const ScanInWork& scan, BodyMotion& motion) {
+// The motion by which most of the scan fits the map: the speed straight on is tried out, then corrected together with
+// what shakes the vehicle.
+PoseAttempt Localizer::withBestMotion(const PoseAttempt& found, const ScanInWork& scan, ScanMotion& motion) {
   constexpr double kFastest_mps = 40.0;
   constexpr double kStep_mps = 8.0;
-  constexpr int kFinerSteps = 2;
+  const Vector6d kSteps = (Vector6d() << 3.0, 0.0, 0.3, 0.0, 0.06, 0.06).finished();  // m/s, rad/s
+  constexpr int kRounds = 2;
+  constexpr double kFinerStep = 0.35;
   struct Trial {
-    double speed_mps = 0.0;
+    Vector6d rates = Vector6d::Zero();  // velocity, turn rate
     double fit = -1.0;
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   };
-  const auto tried = [&](double speed_mps, const Eigen::Isometry3d& start) {
-    const BodyMotion straight{speed_mps * Eigen::Vector3d::UnitX()};
-    const AlignmentResult alignment = finder_->align(moving_->source.compensatedBy(straight), start);
+  const auto evenMotion = [](const Vector6d& rates) { return ScanMotion::even({rates.head<3>(), rates.tail<3>()}); };
+  const auto tried = [&](const Vector6d& rates, const Eigen::Isometry3d& start) {
+    const AlignmentResult alignment = finder_->align(moving_->source.compensatedBy(evenMotion(rates)), start);
     const double fit = alignment.converged() ? alignment.likelihoods.unweighted * alignment.overlap : -1.0;
-    return Trial{speed_mps, fit, alignment.T_map_source};
+    return Trial{rates, fit, alignment.T_map_source};
   };
-  Trial best{0.0, -1.0, found.alignment.T_map_source};
+  // Where the scan was found as it is may be off by half the way of the turn.
+  Trial best;
+  best.T_map_base = found.alignment.T_map_source;
   Eigen::Isometry3d start = best.T_map_base;
   for (double speed_mps = 0.0; speed_mps <= kFastest_mps; speed_mps += kStep_mps) {
-    const Trial trial = tried(speed_mps, start);
-    if (getenv("DBG")) fprintf(stderr, "speed %g fit %g\n", trial.speed_mps, trial.fit);
+    Trial trial = tried(speed_mps * Vector6d::UnitX(), start);
+    if (found.search == SearchExtent::NONE) {
+      const Trial other = tried(speed_mps * Vector6d::UnitX(), scan.predicted.T_map_base);
+      if (other.fit > trial.fit) trial = other;
+    }
     if (trial.fit > best.fit) best = trial;
     if (trial.fit >= 0.0) start = trial.T_map_base;
   }
-  double step_mps = kStep_mps;
-  for (int finer = 0; finer < kFinerSteps; ++finer) {
-    step_mps *= 0.5;
-    const Trial middle = best;
-    for (const double speed_mps : {middle.speed_mps - step_mps, middle.speed_mps + step_mps}) {
-      const Trial trial = tried(speed_mps, middle.T_map_base);
-      if (getenv("DBG")) fprintf(stderr, "speed %g fit %g\n", trial.speed_mps, trial.fit);
-      if (trial.fit > best.fit) best = trial;
+  if (best.fit < 0.0) return found;
+  for (int round = 0; round < kRounds; ++round) {
+    for (int k = 0; k < 6; ++k) {
+      const double step = std::pow(kFinerStep, round) * kSteps[k];
+      if (step == 0.0) continue;
+      const Trial less = tried(best.rates - step * Vector6d::Unit(k), best.T_map_base);
+      const Trial more = tried(best.rates + step * Vector6d::Unit(k), best.T_map_base);
+      // The summit of the parabola.
+      const double bend = less.fit + more.fit - 2.0 * best.fit;
+      const double way = bend < 0.0 ? std::clamp(0.5 * (less.fit - more.fit) / bend, -1.0, 1.0) : 0.0;
+      const Trial summit = tried(best.rates + way * step * Vector6d::Unit(k), best.T_map_base);
+      for (const Trial& trial : {less, more, summit}) {
+        if (trial.fit > best.fit) best = trial;
+      }
+      if (getenv("DBG"))
+        fprintf(stderr, "best %d %d fit %g rates %g %g %g %g %g %g\n", round, k, best.fit, best.rates[0], best.rates[1],
+                best.rates[2], best.rates[3], best.rates[4], best.rates[5]);
     }
   }
-  if (best.fit < 0.0) return found;
-  motion = {best.speed_mps * Eigen::Vector3d::UnitX()};
+  motion = evenMotion(best.rates);
   const PoseAttempt again = compensatedAgain(found, best.T_map_base, motion, scan);
   return again.accepted() || !found.accepted() ? again : found;
 }
@@ -309,19 +330,24 @@ PoseAttempt Localizer::locateMoving(const SourcePoints& measured, const ScanPrio
   source.take(measured, preparation_.times_s());
   if (!source.hasTimes()) return locate(measured, scan);
   const TrackState& track = prediction_.state();
-  const std::optional<BodyMotion> expected = moving_->motion.expected(track, priors);
-  BodyMotion motion = expected.value_or(BodyMotion());
+  const std::optional<ScanMotion> expected = moving_->motion.expected(track, priors);
+  ScanMotion motion = expected.value_or(ScanMotion());
   PoseAttempt found = locate(source.compensatedBy(motion), scan);
   const bool is_unknown = !expected || (found.search == SearchExtent::EVERYWHERE && !priors.motion);
-  if (is_unknown && found.alignment.converged()) found = withBestSpeed(found, scan, motion);
+  if (is_unknown && found.alignment.converged()) found = withBestMotion(found, scan, motion);
   for (int k = 0; k < kMostRepetitions && found.accepted() && found.search != SearchExtent::EVERYWHERE; ++k) {
-    const std::optional<BodyMotion> moved = moving_->motion.motionTo(found.T_map_base, track);
+    const std::optional<ScanMotion> moved = moving_->motion.motionTo(found.T_map_base, track);
     if (!moved || priors.motion) break;
     // Points moved too far on the whole have set the pose back, of which the motion then tells too little.
     const double share = 1.0 / (1.0 + source.meanTime_s() / *moving_->motion.elapsed_s(track));
-    BodyMotion better = motion;
-    better.velocity_mps += share * (moved->velocity_mps - motion.velocity_mps);
-    better.turn_rate_radps += share * (moved->turn_rate_radps - motion.turn_rate_radps);
+    const ScanMotion better{mixed(motion.before, moved->before, share), mixed(motion.after, moved->after, share)};
+    if (getenv("DBG"))
+      fprintf(stderr, "scan %.2f motion %.3f %.3f %.3f w %.4f %.4f %.4f moved %.3f %.3f %.3f w %.4f %.4f %.4f\n",
+              scan.stamp_s, motion.before.velocity_mps.x(), motion.before.velocity_mps.y(),
+              motion.before.velocity_mps.z(), motion.before.turn_rate_radps.x(), motion.before.turn_rate_radps.y(),
+              motion.before.turn_rate_radps.z(), moved->before.velocity_mps.x(), moved->before.velocity_mps.y(),
+              moved->before.velocity_mps.z(), moved->after.turn_rate_radps.x(), moved->after.turn_rate_radps.y(),
+              moved->after.turn_rate_radps.z());
     if (shiftBetween(better, motion, source.reach_s()) < kSettledShift_m) break;
     const PoseAttempt again = compensatedAgain(found, found.alignment.T_map_source, better, scan);
     if (!again.accepted()) break;

@@ -48,17 +48,32 @@ struct Columns {
   const float* time_s;
 };
 
-void moveColumns(std::size_t count, const Columns& from, const BodyMotion& motion, float* __restrict to_x,
+// A motion in single precision, before and after the stamp.
+struct Rates {
+  explicit Rates(const ScanMotion& motion) {
+    for (int k = 0; k < 3; ++k) {
+      before[k] = static_cast<float>(motion.before.velocity_mps[k]);
+      before[3 + k] = static_cast<float>(motion.before.turn_rate_radps[k]);
+      after[k] = static_cast<float>(motion.after.velocity_mps[k]);
+      after[3 + k] = static_cast<float>(motion.after.turn_rate_radps[k]);
+    }
+  }
+  float before[6];
+  float after[6];
+};
+
+void moveColumns(std::size_t count, const Columns& from, const ScanMotion& motion, float* __restrict to_x,
                  float* __restrict to_y, float* __restrict to_z) {
   const float* __restrict x = from.x;
   const float* __restrict y = from.y;
   const float* __restrict z = from.z;
   const float* __restrict times_s = from.time_s;
-  const Eigen::Vector3f v = motion.velocity_mps.cast<float>(), w = motion.turn_rate_radps.cast<float>();
-  const float vx = v.x(), vy = v.y(), vz = v.z(), wx = w.x(), wy = w.y(), wz = w.z();
-  const float rate_squared = w.squaredNorm();
+  const Rates rates(motion);
+  const auto of = [&](int k, float t) { return t < 0.0F ? rates.before[k] : rates.after[k]; };
   for (std::size_t i = 0; i < count; ++i) {
     const float t = times_s[i], t2 = t * t;
+    const float vx = of(0, t), vy = of(1, t), vz = of(2, t), wx = of(3, t), wy = of(4, t), wz = of(5, t);
+    const float rate_squared = wx * wx + wy * wy + wz * wz;
     const float ux = vx + (wy * z[i] - wz * y[i]);
     const float uy = vy + (wz * x[i] - wx * z[i]);
     const float uz = vz + (wx * y[i] - wy * x[i]);
@@ -98,9 +113,12 @@ BodyMotion motionBetween(const Eigen::Isometry3d& T_before_now, double duration_
   return {meanRotation(turned).inverse() * T_before_now.translation() / duration_s, turned / duration_s};
 }
 
-double shiftBetween(const BodyMotion& a, const BodyMotion& b, double duration_s) {
-  return duration_s *
-         ((a.velocity_mps - b.velocity_mps).norm() + kShiftArm_m * (a.turn_rate_radps - b.turn_rate_radps).norm());
+double shiftBetween(const ScanMotion& a, const ScanMotion& b, double duration_s) {
+  const auto speed = [](const BodyMotion& one, const BodyMotion& other) {
+    return (one.velocity_mps - other.velocity_mps).norm() +
+           kShiftArm_m * (one.turn_rate_radps - other.turn_rate_radps).norm();
+  };
+  return duration_s * std::max(speed(a.before, b.before), speed(a.after, b.after));
 }
 
 std::optional<ScanClock> clockOf(const ScanView& scan, double stamp_s) {
@@ -135,7 +153,7 @@ void timesFromAzimuth(const SourcePoints& points, const Eigen::Isometry3d& T_bas
                T_lidar_base.row(1), static_cast<float>(counterclockwise ? period_s : -period_s), times_s.data());
 }
 
-void compensate(const SourcePoints& points, const std::vector<float>& times_s, const BodyMotion& motion,
+void compensate(const SourcePoints& points, const std::vector<float>& times_s, const ScanMotion& motion,
                 SourcePoints& moved) {
   moved.x.resize(points.size());
   moved.y.resize(points.size());
@@ -144,7 +162,7 @@ void compensate(const SourcePoints& points, const std::vector<float>& times_s, c
               moved.x.data(), moved.y.data(), moved.z.data());
 }
 
-bool compensateScan(const ScanView& scan, MotionCompensation times, const ScanTiming& timing, const BodyMotion& motion,
+bool compensateScan(const ScanView& scan, MotionCompensation times, const ScanTiming& timing, const ScanMotion& motion,
                     std::vector<LidarPoint>& moved) {
   constexpr std::size_t kBlock = 256;
   std::optional<ScanClock> clock;
@@ -210,8 +228,8 @@ void MovingSource::take(const SourcePoints& source, const std::vector<float>& ti
   moved_.labelled = source.labelled;
 }
 
-const SourcePoints& MovingSource::compensatedBy(const BodyMotion& motion) {
-  if (!hasTimes() || shiftBetween(motion, BodyMotion(), reach_s_) < kNegligibleShift_m) return *source_;
+const SourcePoints& MovingSource::compensatedBy(const ScanMotion& motion) {
+  if (!hasTimes() || shiftBetween(motion, ScanMotion(), reach_s_) < kNegligibleShift_m) return *source_;
   compensate(*source_, *times_s_, motion, moved_);
   return moved_;
 }

@@ -19,13 +19,21 @@ struct BodyMotion {
   Eigen::Vector3d turn_rate_radps = Eigen::Vector3d::Zero();
 };
 
+/// The motion of a body during a scan.
+struct ScanMotion {
+  BodyMotion before;  ///< until the stamp
+  BodyMotion after;   ///< from the stamp on
+
+  static ScanMotion even(const BodyMotion& motion) { return {motion, motion}; }
+};
+
 /// The even motion that leads from one pose to another.
 /// @param T_before_now  pose of the body in its frame before
 /// @param duration_s    that it took, other than 0
 SAW_NDT_EXPORT BodyMotion motionBetween(const Eigen::Isometry3d& T_before_now, double duration_s);
 
-/// How far two motions carry a point kShiftArm_m away from each other (m) in a time.
-SAW_NDT_EXPORT double shiftBetween(const BodyMotion& a, const BodyMotion& b, double duration_s);
+/// How far two motions carry a point kShiftArm_m away from each other (m) in a time before or after the stamp.
+SAW_NDT_EXPORT double shiftBetween(const ScanMotion& a, const ScanMotion& b, double duration_s);
 constexpr double kShiftArm_m = 20.0;
 
 /// How the times of a scan's points are read.
@@ -50,12 +58,12 @@ SAW_NDT_EXPORT std::optional<ScanClock> clockOf(const ScanView& scan, double sta
 SAW_NDT_EXPORT void timesFromAzimuth(const SourcePoints& points, const Eigen::Isometry3d& T_base_lidar,
                                      bool counterclockwise, double period_s, std::vector<float>& times_s);
 
-/// Points as a body that moves evenly sees them at the stamp, each measured at a time of its own:
+/// Points as a moving body sees them at the stamp, each measured at a time of its own:
 /// q = exp(t [w v]) p = p + t u + (1 - cos |w|t) / |w|^2 w x u + (|w|t - sin |w|t) / |w|^3 w x (w x u), u = v + w x p.
 /// @param points   in the frame of the body; labels are not looked at
 /// @param times_s  from the stamp, one a point
 /// @param moved    its coordinates are set
-SAW_NDT_EXPORT void compensate(const SourcePoints& points, const std::vector<float>& times_s, const BodyMotion& motion,
+SAW_NDT_EXPORT void compensate(const SourcePoints& points, const std::vector<float>& times_s, const ScanMotion& motion,
                                SourcePoints& moved);
 
 /// The same of the points of a scan in their order, with times by ScanPreparationOptions::motion_compensation. Points
@@ -63,7 +71,7 @@ SAW_NDT_EXPORT void compensate(const SourcePoints& points, const std::vector<flo
 /// @param motion  of the LiDAR
 /// @return false where the scan does not tell times; `moved` is then that of the scan as it is
 SAW_NDT_EXPORT bool compensateScan(const ScanView& scan, MotionCompensation times, const ScanTiming& timing,
-                                   const BodyMotion& motion, std::vector<LidarPoint>& moved);
+                                   const ScanMotion& motion, std::vector<LidarPoint>& moved);
 
 /// How long a turn of the LiDAR takes, from the stamps of scans: the median of their last distances. A tenth of a
 /// second until there are any.
@@ -99,7 +107,7 @@ class SAW_NDT_EXPORT MovingSource {
 
   /// The source as seen at the stamp, valid until the next call: that of take() itself, bit for bit, where no point
   /// moves by a centimetre, as if the vehicle stood.
-  const SourcePoints& compensatedBy(const BodyMotion& motion);
+  const SourcePoints& compensatedBy(const ScanMotion& motion);
 
  private:
   const SourcePoints* source_ = nullptr;

@@ -22,8 +22,8 @@ namespace saw_ndt {
 
 namespace internal {
 class PoseFinder;
-struct BodyMotion;
 struct PoseAttempt;
+struct ScanMotion;
 }  // namespace internal
 
 struct SAW_NDT_EXPORT LocalizerOptions {
@@ -161,10 +161,10 @@ class SAW_NDT_EXPORT Localizer {
   static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options);
   internal::PoseAttempt locate(const SourcePoints& source, ScanInWork& scan);
   internal::PoseAttempt locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan);
-  internal::PoseAttempt withBestSpeed(const internal::PoseAttempt& found, const ScanInWork& scan,
-                                      internal::BodyMotion& motion);
+  internal::PoseAttempt withBestMotion(const internal::PoseAttempt& found, const ScanInWork& scan,
+                                       internal::ScanMotion& motion);
   internal::PoseAttempt compensatedAgain(const internal::PoseAttempt& found, const Eigen::Isometry3d& T_map_base_start,
-                                         const internal::BodyMotion& motion, const ScanInWork& scan);
+                                         const internal::ScanMotion& motion, const ScanInWork& scan);
 
   std::unique_ptr<internal::PoseFinder> finder_;
   std::unique_ptr<OngoingSearch> ongoing_search_;
