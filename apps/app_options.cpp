@@ -333,6 +333,10 @@ std::string AppOptions::help() const {
   return text + helpEntry("-h, -help", "print this text", width);
 }
 
+void warn(const AppOptions& app, const std::string& message) {
+  std::cerr << app.name() << ": warning: " << onOneLine(message) << std::endl;
+}
+
 int runApp(int argc, const char* const* argv, AppOptions& app, const std::function<void()>& work) {
   const auto fail = [&](const std::string& message, int code) {
     std::cerr << app.name() << ": " << onOneLine(message) << std::endl;

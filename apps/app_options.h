@@ -94,6 +94,9 @@ class AppOptions {
 /// finite and there are `count` of them, or any number for 0
 std::vector<double> parseNumbers(const std::string& option, const std::string& text, std::size_t count);
 
+/// Prints a line on stderr, "app: warning: message"; the work goes on.
+void warn(const AppOptions& app, const std::string& message);
+
 /// Parses the command line, does the work and returns the exit code: 0 done (or help printed), 1 the work threw, 2
 /// wrong usage. Errors are one line on stderr, "app: message".
 int runApp(int argc, const char* const* argv, AppOptions& app, const std::function<void()>& work);

@@ -3,6 +3,7 @@
 
 #include "alignment_report.h"
 #include "app_options.h"
+#include "bin_fields_argument.h"
 #include "localization/pose_finder.h"
 #include "localization/source_voxel_filter.h"
 #include "pose_argument.h"
@@ -35,6 +36,7 @@ struct Arguments {
   int max_iterations = saw_ndt::AlignmentOptions().max_iterations;
   double source_voxel_m = 0.0;
   double min_overlap = saw_ndt::AlignmentOptions().min_overlap;
+  int bin_fields = 0;
   int threads = 0;
 };
 
@@ -51,8 +53,8 @@ saw_ndt::NeighborhoodSearchMethod neighborsOf(const std::string& name) {
 }
 
 template <typename PointT>
-typename pcl::PointCloud<PointT>::Ptr readCloud(const std::string& file) {
-  auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>(saw_ndt::readPointCloud<PointT>(file));
+typename pcl::PointCloud<PointT>::Ptr readCloud(const std::string& file, int bin_fields) {
+  auto cloud = pcl::make_shared<pcl::PointCloud<PointT>>(saw_ndt::readPointCloud<PointT>(file, bin_fields));
   if constexpr (pcl::traits::has_label<PointT>::value) {
     for (std::size_t i = 0; i < cloud->size(); ++i) {
       if ((*cloud)[i].label < saw_ndt::kStructuralLabelCount) continue;
@@ -129,8 +131,8 @@ Eigen::Isometry3d searched(const Arguments& arguments, const saw_ndt::NdtTarget&
 
 template <typename PointT>
 void align(const Arguments& arguments) {
-  const auto source = readCloud<PointT>(arguments.source_file);
-  const auto target = readCloud<PointT>(arguments.target_file);
+  const auto source = readCloud<PointT>(arguments.source_file, arguments.bin_fields);
+  const auto target = readCloud<PointT>(arguments.target_file, arguments.bin_fields);
   saw_ndt::WeightedNormalDistributionsTransform<PointT, PointT, double> ndt;
   ndt.setResolution(static_cast<float>(arguments.resolution_m));
   ndt.setNeighborhoodSearchMethod(neighborsOf(arguments.neighbors));
@@ -176,6 +178,7 @@ void align(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
+  saw_ndt::BinFieldsArgument bin_fields;
   saw_ndt::AppOptions app("saw_ndt_align", kDescription);
   app.addPositional("SOURCE", &arguments.source_file, "cloud to move, .pcd or .bin");
   app.addPositional("TARGET", &arguments.target_file, "cloud to move it onto, .pcd or .bin");
@@ -193,6 +196,7 @@ int main(int argc, char** argv) {
                 "thin SOURCE to a centroid a voxel of this edge before it is aligned, 0 for none");
   app.addOption("min-overlap", &arguments.min_overlap, "SHARE",
                 "with less of SOURCE beside the ground on surfaces of TARGET there is no answer");
+  bin_fields.addTo(app);
   app.addFlag("classical", &arguments.classical, "ignore labels");
   app.addFlag("fitness", &arguments.with_fitness,
               "also tell the mean squared distance (m^2) of the aligned points to their nearest ones in TARGET");
@@ -200,6 +204,7 @@ int main(int argc, char** argv) {
 
   return saw_ndt::runApp(argc, argv, app, [&] {
     arguments.threads = app.threads();
+    arguments.bin_fields = bin_fields.value();
     if (arguments.global && app.isGiven("guess")) throw saw_ndt::UsageError("option -global: excludes -guess");
     saw_ndt::checkedUsage([&] {
       saw_ndt::checkOption(arguments.resolution_m > 0.0, "resolution", arguments.resolution_m, "positive");

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "app_options.h"
+#include "bin_fields_argument.h"
 #include "io/staged_output.h"
 #include "output_folder.h"
 #include "report/benchmark_output.h"
@@ -30,15 +31,15 @@ std::vector<MapDrive> drivesOf(const std::string& word, bool other_given) {
 }
 
 std::vector<saw_ndt::BenchmarkDrive> openDrives(const std::vector<std::string>& folders,
-                                                const std::vector<std::string>& map_folders) {
+                                                const std::vector<std::string>& map_folders, int bin_fields) {
   if (!map_folders.empty() && map_folders.size() != folders.size()) {
     throw saw_ndt::UsageError("option -map-from: " + std::to_string(map_folders.size()) + " drives, where " +
                               std::to_string(folders.size()) + " are to be localized: one for each is needed");
   }
   std::vector<saw_ndt::BenchmarkDrive> drives;
   for (std::size_t i = 0; i < folders.size(); ++i) {
-    drives.push_back({saw_ndt::KittiSequence(folders[i]), {}});
-    if (!map_folders.empty()) drives.back().other.emplace(map_folders[i]);
+    drives.push_back({saw_ndt::KittiSequence(folders[i], {}, bin_fields), {}});
+    if (!map_folders.empty()) drives.back().other.emplace(map_folders[i], std::filesystem::path(), bin_fields);
   }
   return drives;
 }
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
   bool with_paper = false;
   saw_ndt::BenchmarkOptions options;
   saw_ndt::SegmentationArguments segmentation;
+  saw_ndt::BinFieldsArgument bin_fields;
   saw_ndt::AppOptions app("saw_ndt_benchmark", kDescription);
   app.addPositionalList("SEQUENCE", &folders,
                         "folder in KITTI layout with poses: velodyne/*.bin, calib.txt, times.txt");
@@ -67,6 +69,7 @@ int main(int argc, char** argv) {
   app.addOption("skip", &options.skip_s, "SECONDS", "time at the start that the errors leave out; 0 for short drives");
   app.addOption("resolution", &options.resolution_m, "METRES", "edge of the voxels of the maps");
   app.addFlag("paper", &with_paper, "add the paper's Table I beside sequences named 00, 01 and 03");
+  bin_fields.addTo(app);
   segmentation.addTo(app);
 
   return saw_ndt::runApp(argc, argv, app, [&] {
@@ -77,8 +80,8 @@ int main(int argc, char** argv) {
     options.drives = drivesOf(drives, !map_folders.empty());
     options.localizer.segmentation = segmentation.options();
     options.localizer.alignment.threads = app.threads();
-    const saw_ndt::Benchmark benchmark =
-        saw_ndt::checkedUsage([&] { return saw_ndt::Benchmark(openDrives(folders, map_folders), options); });
+    const saw_ndt::Benchmark benchmark = saw_ndt::checkedUsage(
+        [&] { return saw_ndt::Benchmark(openDrives(folders, map_folders, bin_fields.value()), options); });
     const saw_ndt::RunRecord record = saw_ndt::recordRun({argv, argv + argc}, app.threads());
 
     saw_ndt::OutputFolder folder(out_dir);

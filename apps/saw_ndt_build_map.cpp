@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "app_options.h"
+#include "bin_fields_argument.h"
 #include "common/atomic_output.h"
 #include "progress_bar.h"
 #include "saw_ndt/drives/drive_map.h"
@@ -13,16 +14,17 @@ namespace {
 constexpr char kDescription[] =
     "Builds an NDT map from the scans of a drive and their reference poses. Scans are segmented and the map keeps the "
     "sums of ground, non-ground and noise points of every voxel apart, so that one map serves every method of "
-    "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. The same "
-    "scans give the same bytes, in any order and with any number of threads.";
+    "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. A scan that "
+    "cannot be read is left out. The same scans give the same bytes, in any order and with any number of threads.";
 
 }  // namespace
 
 int main(int argc, char** argv) {
   std::string sequence_folder, map_file, poses_file, scans = ":";
-  bool classical = false;
+  bool classical = false, strict = false;
   saw_ndt::DriveMapOptions options;
   saw_ndt::SegmentationArguments segmentation;
+  saw_ndt::BinFieldsArgument bin_fields;
   saw_ndt::AppOptions app("saw_ndt_build_map", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt");
   app.addPositional("MAP", &map_file, "map file to write");
@@ -31,10 +33,12 @@ int main(int argc, char** argv) {
   app.addOption("poses", &poses_file, "FILE",
                 "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
   app.addFlag("classical", &classical, "do not segment: raw points without labels");
+  app.addFlag("strict", &strict, "a scan that cannot be read is an error, and nothing is written");
+  bin_fields.addTo(app);
   segmentation.addTo(app);
 
   return saw_ndt::runApp(argc, argv, app, [&] {
-    const saw_ndt::KittiSequence sequence(sequence_folder, poses_file);
+    const saw_ndt::KittiSequence sequence(sequence_folder, poses_file, bin_fields.value());
     const std::vector<int> selected =
         saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, sequence.scanCount()); });
     options.threads = app.threads();
@@ -47,10 +51,20 @@ int main(int argc, char** argv) {
     { const saw_ndt::internal::AtomicOutput probe(map_file); }
 
     saw_ndt::ProgressBar progress(selected.size());
+    std::vector<std::string> left_out;
+    if (!strict) {
+      options.scan_left_out = [&](const std::string& failure) {
+        left_out.push_back(failure);
+        progress.step();
+      };
+    }
     const saw_ndt::WeightedVoxelMap map =
         saw_ndt::buildDriveMap(*sequence.scans(selected), options, [&] { progress.step(); }).build();
+    for (const std::string& failure : left_out) std::cerr << app.name() << ": " << failure << ": left out\n";
     map.save(map_file);
     std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution()
-              << " m from " << map.origin().point_count << " points of " << map.origin().scan_count << " scans\n";
+              << " m from " << map.origin().point_count << " points of " << map.origin().scan_count << " scans";
+    if (!left_out.empty()) std::cout << ", " << left_out.size() << " left out";
+    std::cout << '\n';
   });
 }

@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "app_options.h"
+#include "io/stamp_check.h"
 #include "report/json.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/kitti.h"
@@ -14,7 +17,8 @@ constexpr char kDescription[] =
     "Compares an estimated trajectory with its reference, nothing aligned: absolute trajectory error, 95th percentile "
     "and maximum of the position error, yaw errors, and KITTI's relative errors where the drive has 100 m. Files are "
     "TUM (stamp x y z qx qy qz qw; poses of the LiDAR) or KITTI (12 numbers a line; poses of the left camera), told "
-    "apart by their columns. Poses of equal stamps (to within 10 ms) are compared. A KITTI file has no stamps: "
+    "apart by their columns. Poses of equal stamps (to within 10 ms) are compared; "
+    "poses of one trajectory must have stamps of their own. A KITTI file has no stamps: "
     "without -times two KITTI files are compared line by line, 0.1 s apart, and must have as many lines. With -calib "
     "KITTI poses are converted to LiDAR poses; without it their errors are those of the camera, its axes turned to x "
     "forward, y left, z up. A KITTI file beside a TUM file needs both -times and -calib.";
@@ -71,6 +75,34 @@ std::pair<saw_ndt::Trajectory, saw_ndt::Trajectory> readTrajectories(const Files
   return both;
 }
 
+/// Says what is odd about the stamps of a trajectory.
+void checkStamps(const saw_ndt::AppOptions& app, const Files& files, const std::string& own_file,
+                 const saw_ndt::Trajectory& trajectory) {
+  const bool has_stamps = trajectory.format == saw_ndt::TrajectoryFormat::TUM;
+  if (!has_stamps && files.times.empty()) return;
+  const std::string& file = has_stamps ? own_file : files.times;
+  std::vector<double> stamps_s;
+  for (const saw_ndt::StampedPose& pose : trajectory.poses) stamps_s.push_back(pose.stamp_s);
+  for (const std::string& odd : saw_ndt::internal::oddStamps(stamps_s)) saw_ndt::warn(app, file + ": " + odd);
+}
+
+/// Says where few of the poses to be evaluated have a reference.
+void checkPairs(const saw_ndt::AppOptions& app, const Files& files, const saw_ndt::Trajectory& estimate,
+                std::size_t pairs, double skip_s) {
+  constexpr double kFew = 0.5;
+  double first_s = estimate.poses.front().stamp_s;
+  for (const saw_ndt::StampedPose& pose : estimate.poses) first_s = std::min(first_s, pose.stamp_s);
+  const auto poses = static_cast<std::size_t>(
+      std::count_if(estimate.poses.begin(), estimate.poses.end(),
+                    [&](const saw_ndt::StampedPose& pose) { return pose.stamp_s - first_s >= skip_s; }));
+  if (static_cast<double>(pairs) >= kFew * static_cast<double>(poses)) return;
+  std::ostringstream tolerance;
+  tolerance << saw_ndt::kStampTolerance_s;
+  saw_ndt::warn(app, files.reference + ": only " + std::to_string(pairs) + " of " + std::to_string(poses) +
+                         " poses of " + files.estimate + " have a reference within " + tolerance.str() +
+                         " s; the errors are of these alone");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -88,7 +120,12 @@ int main(int argc, char** argv) {
   return saw_ndt::runApp(argc, argv, app, [&] {
     if (skip_s < 0.0) throw saw_ndt::UsageError("option -skip: must be 0 or greater");
     const auto [reference, estimate] = readTrajectories(files);
+    checkStamps(
+        app, files.times.empty() || reference.format == saw_ndt::TrajectoryFormat::TUM ? files.reference : files.times,
+        reference);
+    checkStamps(app, files.estimate, estimate);
     const auto pairs = saw_ndt::matchTrajectories(reference.poses, estimate.poses, skip_s);
+    checkPairs(app, files, estimate, pairs.size(), skip_s);
     nlohmann::ordered_json report = saw_ndt::toJson(saw_ndt::evaluatePosePairs(pairs));
     if (const auto relative = saw_ndt::kittiRelativeErrors(pairs)) report.update(saw_ndt::toJson(*relative));
     if (as_json) {

@@ -2,7 +2,9 @@
 #include <optional>
 
 #include "app_options.h"
+#include "bin_fields_argument.h"
 #include "drives/prior_sources.h"
+#include "io/stamp_check.h"
 #include "output_folder.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
@@ -47,11 +49,12 @@ int main(int argc, char** argv) {
   saw_ndt::LocalizerOptions options;
   double initial_radius_m = kSigmas * options.prediction.initial_sigma_m;
   double initial_yaw_range_deg = kSigmas * options.prediction.initial_sigma_deg;
-  bool no_search = false;
+  bool no_search = false, strict = false;
   std::string odometry_file, gnss_file;
   saw_ndt::OdometryDrift drift;
   double gnss_sigma_m = 2.0;
   saw_ndt::SegmentationArguments segmentation;
+  saw_ndt::BinFieldsArgument bin_fields;
   std::string method = options.method.name;
   saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt, times.txt");
@@ -97,6 +100,8 @@ int main(int argc, char** argv) {
                 "a scan turned farther than this from its predicted pose is rejected, unless that is as uncertain");
   app.addChoice("motion-compensation", &motion_compensation, {"auto", "off", "times", "counterclockwise", "clockwise"},
                 "x");
+  app.addFlag("strict", &strict, "a scan that cannot be read makes the run a failure; the results are written");
+  bin_fields.addTo(app);
   segmentation.addTo(app);
   app.addFlag("allow-other-segmentation", &options.allow_other_segmentation,
               "go on where the scans of the map were segmented by other options, as those of another LiDAR");
@@ -131,7 +136,7 @@ int main(int argc, char** argv) {
     if (!initial_pose.empty() && initial_pose != kUnknown) {
       T_map_base_initial = saw_ndt::transformOf(saw_ndt::parseNumbers("initial-pose", initial_pose, 6));
     }
-    const saw_ndt::KittiSequence sequence(sequence_folder, poses_file);
+    const saw_ndt::KittiSequence sequence(sequence_folder, poses_file, bin_fields.value());
     const std::vector<int> selected =
         saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, sequence.scanCount()); });
     sequence.stamps();
@@ -150,6 +155,9 @@ int main(int argc, char** argv) {
     }
 
     saw_ndt::OutputFolder folder(out_dir);
+    for (const std::string& odd : saw_ndt::internal::oddStamps(sequence.stamps())) {
+      saw_ndt::warn(app, (sequence.folder() / "times.txt").string() + ": " + odd);
+    }
     saw_ndt::ProgressBar progress(selected.size());
     std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
     if (!odometry_file.empty()) source = saw_ndt::withOdometry(std::move(source), odometry_file, drift);
@@ -163,8 +171,11 @@ int main(int argc, char** argv) {
       ++done;
       progress.step();
     });
+    std::size_t unreadable = 0;
     for (const std::string& failure : run.failures) {
-      if (!failure.empty()) std::cerr << app.name() << ": " << failure << ": rejected\n";
+      if (failure.empty()) continue;
+      std::cerr << app.name() << ": " << failure << ": rejected\n";
+      ++unreadable;
     }
     const saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
     if (sequence.hasPoses() && !summary.metrics && summary.accepted > 0) {
@@ -177,6 +188,9 @@ int main(int argc, char** argv) {
       throw saw_ndt::Error(sequence_folder, "",
                            "no scan was located in " + map_file +
                                ", the first one for: " + saw_ndt::toString(run.results.front().acceptance));
+    }
+    if (strict && unreadable > 0) {
+      throw saw_ndt::Error(sequence_folder, "", std::to_string(unreadable) + " scans could not be read (-strict)");
     }
   });
 }

@@ -3,6 +3,7 @@
 #include "app_options.h"
 #include "output_folder.h"
 #include "progress_bar.h"
+#include "report/sensor_model_file.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/trajectory.h"
 #include "scene_files.h"
@@ -39,6 +40,14 @@ void readRecorded(const std::string& file, const std::string& times_file, double
   }
 }
 
+std::string sensorHelp() {
+  std::string help = "the LiDAR:";
+  for (const std::string& name : saw_ndt::SensorModel::names()) {
+    if (saw_ndt::SensorModel::named(name).rows() > 0) help += " " + name + ",";
+  }
+  return help + " or FILE.json, another one as in data/sensors";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -46,7 +55,7 @@ int main(int argc, char** argv) {
   int seed = 1, scans = 0;
   bool rolling_shutter = false;
   saw_ndt::DriveOptions drive_options;
-  double rain_share = 0.0, reference_noise_m = 0.0;
+  double rain_share = 0.0, reference_noise_m = 0.0, mounting_roll_deg = 0.0, mounting_pitch_deg = 0.0;
   saw_ndt::AppOptions app("saw_ndt_simulate", kDescription);
   app.addPositional("OUT_DIR", &out_dir, "folder for the sequence, made where it is missing");
   app.addOption("scene", &scene, "NAME",
@@ -58,7 +67,11 @@ int main(int argc, char** argv) {
                 "drive these poses (KITTI: of the camera; TUM: of the LiDAR) in x, y and heading, the scene laid along "
                 "them; height and inclination are the ground's");
   app.addOption("times", &times, "FILE", "stamps of the poses of a KITTI trajectory (default: a turn of the LiDAR)");
-  app.addChoice("sensor", &sensor, saw_ndt::SensorModel::names(), "the LiDAR");
+  app.addOption("sensor", &sensor, "NAME", sensorHelp());
+  app.addOption("mount-roll", &mounting_roll_deg, "DEGREES",
+                "how far the LiDAR is rolled on the vehicle, its left side up; 180: it hangs upside down");
+  app.addOption("mount-pitch", &mounting_pitch_deg, "DEGREES",
+                "angle by which the LiDAR's x axis points below the vehicle's");
   app.addFlag("rolling-shutter", &rolling_shutter,
               "leave the motion during a turn in the scans; otherwise each is seen from its pose");
   app.addOption("rain", &rain_share, "SHARE", "share of the rays that meet a droplet, 0 to 1");
@@ -71,7 +84,8 @@ int main(int argc, char** argv) {
 
   return saw_ndt::runApp(argc, argv, app, [&] {
     if (!times.empty() && trajectory.empty()) throw saw_ndt::UsageError("option -times needs -trajectory");
-    saw_ndt::LidarOptions lidar = saw_ndt::LidarOptions::named(sensor);
+    saw_ndt::LidarOptions lidar =
+        saw_ndt::LidarOptions::of(saw_ndt::checkedUsage([&] { return saw_ndt::sensorModelOf(sensor); }));
     saw_ndt::ReferenceNoiseOptions noise;
     saw_ndt::checkedUsage([&] {
       saw_ndt::checkOption(seed >= 0, "seed", seed, "0 or greater");
@@ -79,6 +93,8 @@ int main(int argc, char** argv) {
       drive_options.seed = static_cast<std::uint64_t>(seed);
       lidar.rolling_shutter = rolling_shutter;
       lidar.rain_share = rain_share;
+      lidar.mounting_roll_deg = mounting_roll_deg;
+      lidar.mounting_pitch_deg = mounting_pitch_deg;
       noise.position_sigma_m = reference_noise_m;
       // Each drive has noise of its own.
       noise.seed = lidar.seed = drive_options.seed * 1000003u + static_cast<std::uint64_t>(drive_options.drive);
@@ -103,11 +119,12 @@ int main(int argc, char** argv) {
       drive = saw_ndt::driveTrajectory(description, drive_options, T_scene_lidar, stamps_s, scans);
     }
     saw_ndt::LidarSimulator simulator(drive.scene, lidar, app.threads());
+    const saw_ndt::VehicleMotion motion = drive.motion->withMounting(lidar.R_vehicle_lidar());
     std::vector<Eigen::Isometry3d> reference;
-    if (reference_noise_m > 0.0) reference = saw_ndt::withReferenceNoise(*drive.motion, noise);
-    saw_ndt::ProgressBar progress(static_cast<std::size_t>(drive.motion->scanCount()));
+    if (reference_noise_m > 0.0) reference = saw_ndt::withReferenceNoise(motion, noise);
+    saw_ndt::ProgressBar progress(static_cast<std::size_t>(motion.scanCount()));
     const saw_ndt::SequenceContent content =
-        saw_ndt::writeSequence(folder.path(), simulator, *drive.motion, reference, [&] { progress.step(); });
+        saw_ndt::writeSequence(folder.path(), simulator, motion, reference, [&] { progress.step(); });
     folder.keep();
     std::cout << out_dir << ": " << content.scan_count << " scans of " << description.name << ", drive "
               << drive_options.drive << ", " << content.point_count << " points\n";

@@ -5,7 +5,6 @@
 #include "benchmark_program.h"
 #include "benchmark_scans.h"
 #include "common/executor.h"
-#include "saw_ndt/common/geometry.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 #include "segmentation/segmentation_stages.h"
@@ -23,7 +22,7 @@ struct Stages {
   std::vector<saw_ndt::StructuralLabel> labels;
 
   void project(int threads) {
-    image.project(scan, options.sensor, saw_ndt::radiansFromDegrees(options.mounting_pitch_deg), threads);
+    image.project(scan, options.sensor, saw_ndt::internal::ScanProjection(options), threads);
   }
   void detectGround() { ground_detection.detect(image, options.sensor, options.ground, ground); }
   void filterComponents(int threads) {

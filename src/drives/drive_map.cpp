@@ -10,14 +10,22 @@ namespace saw_ndt {
 
 namespace {
 
-/// Hands the scans of a source to several threads, until one of them fails.
+/// Hands the scans of a source to several threads, until one of them is an error.
 class SharedSource {
  public:
-  explicit SharedSource(ScanSource& scans) : scans_(scans) {}
+  SharedSource(ScanSource& scans, const std::function<void(const std::string&)>& left_out)
+      : scans_(scans), left_out_(left_out) {}
 
   bool next(RecordedScan& scan) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (failure_ || !scans_.next(scan)) return false;
+    while (left_out_ && !scan.failure.empty()) {
+      left_out_(scan.failure);
+      if (scans_.next(scan)) continue;
+      if (!any_) failure_ = std::make_exception_ptr(Error(scan.failure + ", and no other scan could be read"));
+      return false;
+    }
+    any_ = true;
     if (scan.failure.empty() && scan.T_map_lidar) return true;
     // Scans come in order, so that this is the first bad one.
     failure_ = std::make_exception_ptr(scan.failure.empty()
@@ -31,6 +39,8 @@ class SharedSource {
 
  private:
   ScanSource& scans_;
+  const std::function<void(const std::string&)>& left_out_;
+  bool any_ = false;
   std::mutex mutex_;
   std::exception_ptr failure_;
 };
@@ -41,7 +51,7 @@ WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& optio
                                  const std::function<void()>& scan_done) {
   if (options.segmentation) options.segmentation->check();
   WeightedMapBuilder map(options.resolution_m, options.segmentation);
-  SharedSource source(scans);
+  SharedSource source(scans, options.scan_left_out);
   // Threads read and segment scans. What takes memory, the sums, there is once, and a scan is added to it in a fraction
   // of the time that it takes to segment.
   std::mutex map_mutex;

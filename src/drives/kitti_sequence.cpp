@@ -6,11 +6,15 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "io/bin_scan.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/kitti.h"
+#include "saw_ndt/io/scan_file.h"
 #include "saw_ndt/io/trajectory.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 
 namespace fs = std::filesystem;
 
@@ -38,9 +42,9 @@ class SelectedScans : public ScanSource {
     if (sequence_.hasPoses()) scan.T_map_lidar = sequence_.posesLidar()[place];
     scan.failure.clear();
     try {
-      readKittiScan(sequence_.scanPath(number), scan.points);
+      sequence_.readScan(number, scan);
     } catch (const Error& error) {
-      scan.points.clear();
+      static_cast<ScanPoints&>(scan) = ScanPoints();
       scan.failure = error.what();
     }
     return true;
@@ -55,9 +59,18 @@ class SelectedScans : public ScanSource {
   bool has_stamps_ = false;
 };
 
+fs::path withoutTrailingSlash(const fs::path& folder) { return folder.has_filename() ? folder : folder.parent_path(); }
+
+/// Where the poses of a sequence lie, its path being free of links to parents.
+fs::path posesBeside(const fs::path& sequence) {
+  return sequence.parent_path().parent_path() / "poses" / (sequence.filename().string() + ".txt");
+}
+
 }  // namespace
 
-KittiSequence::KittiSequence(const fs::path& folder, const fs::path& poses_file) : folder_(folder) {
+KittiSequence::KittiSequence(const fs::path& folder, const fs::path& poses_file, int bin_fields)
+    : folder_(folder), bin_fields_(bin_fields) {
+  requireBinFields(bin_fields);
   const fs::path velodyne = folder / "velodyne";
   for (const fs::path& needed : {folder, velodyne}) {
     if (!fs::exists(needed)) throw Error(needed.string(), "", std::strerror(ENOENT));
@@ -73,14 +86,15 @@ KittiSequence::KittiSequence(const fs::path& folder, const fs::path& poses_file)
   if (scans_.empty()) throw Error(velodyne.string(), "", "holds no numbered .bin file");
   std::sort(scans_.begin(), scans_.end(), [](const Scan& a, const Scan& b) { return a.number < b.number; });
 
-  const fs::path absolute = fs::weakly_canonical(fs::absolute(folder / "."));
-  name_ = absolute.has_filename() ? absolute.filename().string() : absolute.parent_path().filename().string();
+  const fs::path as_given = withoutTrailingSlash(fs::absolute(folder).lexically_normal());
+  const fs::path as_is = fs::weakly_canonical(as_given);
+  name_ = as_given.filename().string();
   if (!poses_file.empty()) {
     if (!fs::exists(poses_file)) throw Error(poses_file.string(), "", std::strerror(ENOENT));
     poses_file_ = poses_file;
     return;
   }
-  for (const fs::path& candidate : {folder / "poses.txt", folder / ".." / ".." / "poses" / (name_ + ".txt")}) {
+  for (const fs::path& candidate : {folder / "poses.txt", posesBeside(as_given), posesBeside(as_is)}) {
     if (fs::exists(candidate)) {
       poses_file_ = candidate;
       return;
@@ -100,11 +114,30 @@ fs::path KittiSequence::scanPath(int scan) const { return folder_ / "velodyne" /
 
 fs::path KittiSequence::labelPath(int scan) const { return folder_ / "labels" / (scanAt(scan).stem + ".label"); }
 
-std::vector<LidarPoint> KittiSequence::readScan(int scan) const { return readKittiScan(scanPath(scan)); }
+std::vector<LidarPoint> KittiSequence::readScan(int scan) const {
+  ScanPoints points;
+  readScan(scan, points);
+  return std::move(points.points);
+}
+
+void KittiSequence::readScan(int scan, ScanPoints& points) const {
+  readScanPoints(scanPath(scan), points, binFields());
+}
+
+int KittiSequence::binFields() const {
+  // A scan that is cut, empty or very small does not say.
+  constexpr int kScansLookedAt = 10;
+  for (int scan = 0; bin_fields_ == 0 && scan < std::min(scanCount(), kScansLookedAt); ++scan) {
+    bin_fields_ = tellBinFields(scanPath(scan)).value_or(0);
+  }
+  if (bin_fields_ == 0) bin_fields_ = kKittiFields;
+  return bin_fields_;
+}
 
 std::vector<std::uint16_t> KittiSequence::readLabels(int scan) const {
   std::vector<std::uint16_t> classes = readSemanticKittiLabels(labelPath(scan));
-  const std::uintmax_t points = fs::file_size(scanPath(scan)) / sizeof(LidarPoint);
+  const std::uintmax_t points =
+      fs::file_size(scanPath(scan)) / (static_cast<std::uintmax_t>(binFields()) * sizeof(float));
   if (classes.size() != points) {
     throw Error(labelPath(scan).string(), "",
                 std::to_string(classes.size()) + " labels, where the scan has " + std::to_string(points) + " points");

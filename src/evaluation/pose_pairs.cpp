@@ -27,6 +27,21 @@ std::vector<StampedPose> sortedByStamp(const std::vector<StampedPose>& trajector
   return sorted;
 }
 
+/// Which of several poses of one stamp is meant cannot be told.
+void requireOnePoseAStamp(const std::vector<StampedPose>& sorted, const std::string& name) {
+  constexpr double kSamePlace_m = 0.01;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i].stamp_s > sorted[i - 1].stamp_s) continue;
+    const double distance_m = (sorted[i].T_map_body.translation() - sorted[i - 1].T_map_body.translation()).norm();
+    if (distance_m <= kSamePlace_m) continue;
+    std::ostringstream reason;
+    reason << "two poses of the " << name << " trajectory, " << distance_m << " m apart, have the same stamp ";
+    reason.precision(12);
+    reason << sorted[i].stamp_s << " s: which one is meant cannot be told";
+    throw std::invalid_argument(reason.str());
+  }
+}
+
 const StampedPose& nearestInTime(const std::vector<StampedPose>& sorted, const StampedPose& pose) {
   const auto after = std::lower_bound(sorted.begin(), sorted.end(), pose, earlier);
   if (after == sorted.begin()) return *after;
@@ -42,6 +57,8 @@ std::vector<PosePair> matchTrajectories(const std::vector<StampedPose>& referenc
   checkOption(skip_s >= 0.0 && std::isfinite(skip_s), "skip_s", skip_s, "0 or greater");
   const std::vector<StampedPose> references = sortedByStamp(reference, "reference");
   const std::vector<StampedPose> estimates = sortedByStamp(estimate, "estimated");
+  requireOnePoseAStamp(references, "reference");
+  requireOnePoseAStamp(estimates, "estimated");
   const double first_evaluated_s = estimates.front().stamp_s + skip_s - kStampRounding_s;
 
   std::vector<PosePair> pairs;

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <iomanip>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "common/atomic_output.h"
-#include "common/input_file.h"
+#include "io/bin_scan.h"
+#include "io/binary_records.h"
 #include "io/number_lines.h"
 #include "io/rigid_transform.h"
 #include "saw_ndt/common/error.h"
@@ -24,27 +28,6 @@ constexpr double kPrincipalPointX_px = 620.0;
 constexpr double kPrincipalPointY_px = 188.0;
 constexpr std::array<double, 4> kCameraPlaces_m = {0.0, -0.54, 0.06, -0.48};  // to the left of the left grey one
 
-/// Reads the records of a binary file without a header, into memory that `values` may bring along; Error unless there
-/// is at least one and the last one is whole.
-template <typename Value>
-void readRecords(const fs::path& path, std::vector<Value>& values) {
-  std::ifstream stream = openInputFile(path);
-  stream.seekg(0, std::ios::end);
-  const std::streamoff end = stream.tellg();
-  if (end < 0) throw Error(path.string(), "", "its size cannot be told");
-  const auto size = static_cast<std::size_t>(end);
-  if (size == 0) throw Error(path.string(), "offset 0", "the file is empty");
-  if (size % sizeof(Value) != 0) {
-    throw Error(path.string(), "offset " + std::to_string(size - size % sizeof(Value)),
-                "the last point is cut short: " + std::to_string(size) + " bytes is no multiple of " +
-                    std::to_string(sizeof(Value)));
-  }
-  values.resize(size / sizeof(Value));
-  stream.seekg(0);
-  stream.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(size));
-  if (!stream) throw Error(path.string(), "offset " + std::to_string(stream.gcount()), "could not be read on");
-}
-
 template <typename Value>
 void writeRecords(const fs::path& path, const std::vector<Value>& values) {
   AtomicOutput output(path);
@@ -59,6 +42,30 @@ void writeMatrix(std::ostream& stream, const char* key, const Eigen::Matrix<doub
   stream << '\n';
 }
 
+/// The first word of a line, and what follows it and a colon behind it.
+std::pair<std::string_view, std::string_view> splitAtKey(std::string_view line) {
+  constexpr std::string_view kBlanks = " \t";
+  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+  const std::string_view key = line.substr(0, line.find_first_of(" \t:"));
+  line.remove_prefix(key.size());
+  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+  if (!line.empty() && line.front() == ':') line.remove_prefix(1);
+  return {key, line};
+}
+
+/// The rotation whose matrix is given row by row.
+Eigen::Isometry3d rotation(const fs::path& path, std::size_t line, const std::vector<double>& values) {
+  if (values.size() != 9) {
+    throw Error(path.string(), linePlace(line), std::to_string(values.size()) + " numbers, where 9 are needed");
+  }
+  std::vector<double> transform;
+  for (std::size_t i = 0; i < 9; ++i) {
+    transform.push_back(values[i]);
+    if (i % 3 == 2) transform.push_back(0.0);
+  }
+  return rigidTransform(path, line, transform);
+}
+
 }  // namespace
 
 std::vector<LidarPoint> readKittiScan(const fs::path& path) {
@@ -70,6 +77,12 @@ std::vector<LidarPoint> readKittiScan(const fs::path& path) {
 void readKittiScan(const fs::path& path, std::vector<LidarPoint>& points) {
   static_assert(sizeof(LidarPoint) == 4 * sizeof(float));
   readRecords(path, points);
+  const float* values = &points.front().x;
+  const int fields = tellBinFields(values, kKittiFields * points.size()).value_or(kKittiFields);
+  if (fields != kKittiFields) {
+    throw Error(path.string(), "", "seems to have " + std::to_string(fields) + " float32 a point, where 4 are needed");
+  }
+  requireScanCoordinates(path, values, kKittiFields * points.size(), kKittiFields);
 }
 
 std::vector<std::uint16_t> readSemanticKittiLabels(const fs::path& path) {
@@ -102,13 +115,21 @@ void writeKittiCalibration(const fs::path& path, const Eigen::Isometry3d& T_came
 }
 
 Eigen::Isometry3d readKittiCalibration(const fs::path& path) {
+  std::optional<Eigen::Isometry3d> Tr, Tr_unrectified;
+  Eigen::Isometry3d rectification = Eigen::Isometry3d::Identity();
   for (const TextLine& line : readTextLines(path)) {
-    const std::size_t colon = line.text.find(':');
-    const std::string key = line.text.substr(0, colon);
-    if (key != "Tr" && key != "Tr_velo_to_cam" && key != "Tr_velo_cam") continue;
-    if (colon == std::string::npos) throw Error(path.string(), linePlace(line.number), "no ':' after " + key);
-    return rigidTransform(path, line.number, parseNumbers(path, line.number, line.text.substr(colon + 1)));
+    const auto [key, rest] = splitAtKey(line.text);
+    const auto numbers = [&, text = rest] { return parseNumbers(path, line.number, text); };
+    if (key == "Tr") {
+      Tr = rigidTransform(path, line.number, numbers());
+    } else if (key == "Tr_velo_to_cam" || key == "Tr_velo_cam") {
+      Tr_unrectified = rigidTransform(path, line.number, numbers());
+    } else if (key == "R0_rect" || key == "R_rect") {
+      rectification = rotation(path, line.number, numbers());
+    }
   }
+  if (Tr) return *Tr;
+  if (Tr_unrectified) return rectification * *Tr_unrectified;
   throw Error(path.string(), "", "no line Tr (LiDAR to left camera)");
 }
 

@@ -11,7 +11,8 @@ namespace saw_ndt::internal {
 
 namespace {
 constexpr std::string_view kBlanks = " \t\r\f\v";
-}
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+}  // namespace
 
 std::string linePlace(std::size_t number) { return "line " + std::to_string(number); }
 
@@ -20,6 +21,8 @@ std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
   std::vector<TextLine> lines;
   std::string text;
   for (std::size_t number = 1; std::getline(stream, text); ++number) {
+    if (number == 1 && text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
+      text.erase(0, kByteOrderMark.size());
     const std::size_t first = text.find_first_not_of(kBlanks);
     if (first != std::string::npos && text[first] != '#') lines.push_back({number, text});
   }

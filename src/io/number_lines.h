@@ -23,7 +23,7 @@ struct NumberLine {
 /// "line N", the place that an Error names.
 std::string linePlace(std::size_t number);
 
-/// The lines of a file that are neither blank nor comments ('#' first), without line ends of either kind.
+/// The lines of a file that are neither blank nor comments ('#' first), without their ends and a byte-order mark.
 std::vector<TextLine> readTextLines(const std::filesystem::path& path);
 
 /// Numbers separated by blanks, whatever the locale. Throws Error that quotes what is no finite number.

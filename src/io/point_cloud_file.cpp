@@ -1,18 +1,14 @@
 #include "saw_ndt/io/point_cloud_file.h"
 
+#include <pcl/common/io.h>
 #include <pcl/common/point_tests.h>
-#include <pcl/console/print.h>
 #include <pcl/conversions.h>
-#include <pcl/io/pcd_io.h>
 
 #include <algorithm>
-#include <new>
 #include <type_traits>
 
-#include "common/atomic_output.h"
-#include "io/pcd_header.h"
+#include "io/pcd_fields.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/io/kitti.h"
 
 namespace saw_ndt {
 
@@ -20,82 +16,87 @@ using namespace internal;
 
 namespace {
 
-/// Keeps PCL from printing what an Error says already.
-class QuietPcl {
- public:
-  QuietPcl() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
-  ~QuietPcl() { pcl::console::setVerbosityLevel(level_); }
-  QuietPcl(const QuietPcl&) = delete;
-  QuietPcl& operator=(const QuietPcl&) = delete;
-
- private:
-  pcl::console::VERBOSITY_LEVEL level_ = pcl::console::getVerbosityLevel();
-};
-
-bool isKittiScan(const std::filesystem::path& path) { return path.extension() == ".bin"; }
-
-void requireKnownExtension(const std::filesystem::path& path) {
-  if (isKittiScan(path) || path.extension() == ".pcd") return;
-  throw Error(path.string(), "", "the name of a point cloud must end in .pcd or .bin");
-}
-
-void requireField(const std::filesystem::path& path, const PcdHeader& header, const std::string& name, char type,
-                  bool may_be_absent) {
-  const auto field = std::find_if(header.fields.begin(), header.fields.end(),
-                                  [&](const PcdField& candidate) { return candidate.name == name; });
-  if (field == header.fields.end()) {
-    if (!may_be_absent) throw Error(path.string(), "", "has no field " + name);
-  } else if (field->type != type || field->size != 4 || field->count != 1) {
-    throw Error(path.string(), "", "the field " + name + " is no " + (type == 'F' ? "float32" : "uint32"));
-  }
-}
-
 template <typename PointT>
-pcl::PointCloud<PointT> readPcd(const std::filesystem::path& path) {
-  const PcdHeader header = readPcdHeader(path);
-  for (const char* name : {"x", "y", "z"}) requireField(path, header, name, 'F', false);
-  if constexpr (std::is_same_v<PointT, pcl::PointXYZI>) requireField(path, header, "intensity", 'F', true);
-  if constexpr (std::is_same_v<PointT, pcl::PointXYZL>) requireField(path, header, "label", 'U', false);
-
-  const QuietPcl quiet;
-  pcl::PCLPointCloud2 fields;
-  try {
-    if (pcl::PCDReader().read(path.string(), fields) < 0) throw Error(path.string(), "", "is damaged");
-  } catch (const pcl::PCLException& failure) {
-    throw Error(path.string(), "", failure.what());
-  } catch (const std::bad_alloc&) {
-    throw Error(path.string(), "", "is damaged, or too large for the memory");
+void fill(pcl::PointCloud<PointT>& cloud, const std::vector<LidarPoint>& points) {
+  cloud.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    PointT& point = cloud[i];
+    point.getVector3fMap() = Eigen::Vector3f(points[i].x, points[i].y, points[i].z);
+    if constexpr (std::is_same_v<PointT, pcl::PointXYZI>) point.intensity = points[i].intensity;
+    cloud.is_dense = cloud.is_dense && pcl::isFinite(point);
   }
-  pcl::PointCloud<PointT> cloud;
-  pcl::fromPCLPointCloud2(fields, cloud);
-  return cloud;
+}
+
+PcdField fieldOf(const std::filesystem::path& path, const pcl::PCLPointField& field) {
+  using Type = pcl::PCLPointField;
+  PcdField written{field.name, 4, 'F', std::max<std::uint64_t>(field.count, 1)};
+  switch (field.datatype) {
+    case Type::INT8:
+    case Type::INT16:
+    case Type::INT32:
+      written.type = 'I';
+      break;
+    case Type::UINT8:
+    case Type::UINT16:
+    case Type::UINT32:
+      written.type = 'U';
+      break;
+    case Type::FLOAT32:
+    case Type::FLOAT64:
+      break;
+    default:
+      throw Error(path.string(), "", "the field " + field.name + " is of a type that PCD files have not");
+  }
+  written.size = static_cast<std::uint64_t>(pcl::getFieldSize(field.datatype));
+  return written;
 }
 
 }  // namespace
 
 template <typename PointT>
-pcl::PointCloud<PointT> readPointCloud(const std::filesystem::path& path) {
-  requireKnownExtension(path);
-  if (!isKittiScan(path)) return readPcd<PointT>(path);
-  if constexpr (std::is_same_v<PointT, pcl::PointXYZL>) {
-    throw Error(path.string(), "", "a KITTI scan holds no labels");
-  } else {
-    pcl::PointCloud<PointT> cloud;
-    for (const LidarPoint& point : readKittiScan(path)) {
-      PointT& added = cloud.emplace_back(point.x, point.y, point.z);
-      if constexpr (std::is_same_v<PointT, pcl::PointXYZI>) added.intensity = point.intensity;
-      cloud.is_dense = cloud.is_dense && pcl::isFinite(added);
+pcl::PointCloud<PointT> readPointCloud(const std::filesystem::path& path, int bin_fields) {
+  requireScanExtension(path);
+  pcl::PointCloud<PointT> cloud;
+  if (isBinScan(path)) {
+    if constexpr (std::is_same_v<PointT, pcl::PointXYZL>) {
+      throw Error(path.string(), "", "a KITTI scan holds no labels");
+    } else {
+      fill(cloud, readScanPoints(path, bin_fields).points);
+      return cloud;
     }
-    return cloud;
   }
+  const PcdCloud file = readPcdCloud(path);
+  fill(cloud, pointsOf(path, file));
+  cloud.width = static_cast<std::uint32_t>(file.width);
+  cloud.height = static_cast<std::uint32_t>(file.height);
+  if constexpr (std::is_same_v<PointT, pcl::PointXYZL>) {
+    const std::vector<std::uint32_t> labels = labelsOf(path, file);
+    for (std::size_t i = 0; i < labels.size(); ++i) cloud[i].label = labels[i];
+  }
+  return cloud;
 }
 
 std::vector<std::string> pointCloudFields(const std::filesystem::path& path) {
-  requireKnownExtension(path);
-  if (isKittiScan(path)) return {"x", "y", "z", "intensity"};
+  requireScanExtension(path);
+  if (isBinScan(path)) return {"x", "y", "z", "intensity"};
   std::vector<std::string> names;
   for (const PcdField& field : readPcdHeader(path).fields) names.push_back(field.name);
   return names;
+}
+
+void writeLabelledScan(const std::filesystem::path& path, const std::filesystem::path& scan_file,
+                       const std::vector<StructuralLabel>& labels, int bin_fields) {
+  requireScanExtension(scan_file);
+  PcdCloud cloud = isBinScan(scan_file) ? cloudOf(readScanPoints(scan_file, bin_fields)) : readPcdCloud(scan_file);
+  if (labels.size() != cloud.points) {
+    throw Error(scan_file.string(), "",
+                std::to_string(labels.size()) + " labels, where it has " + std::to_string(cloud.points) + " points");
+  }
+  std::vector<std::uint32_t> values(labels.size());
+  std::transform(labels.begin(), labels.end(), values.begin(),
+                 [](StructuralLabel label) { return static_cast<std::uint32_t>(label); });
+  cloud.set("label", 'U', values);
+  writePcdCloud(path, cloud);
 }
 
 template <typename PointT>
@@ -107,20 +108,22 @@ void writePcd(const std::filesystem::path& path, const pcl::PointCloud<PointT>& 
 
 void writePcd(const std::filesystem::path& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
               const Eigen::Quaternionf& sensor_orientation) {
-  if (cloud.width == 0 || cloud.height == 0) {
-    throw Error(path.string(), "", "a cloud without points cannot be written as PCD");
+  PcdCloud file;
+  file.width = cloud.width;
+  file.height = cloud.height;
+  file.points = file.width * file.height;
+  const Eigen::Quaternionf& q = sensor_orientation;
+  file.viewpoint = {sensor_origin.x(), sensor_origin.y(), sensor_origin.z(), q.w(), q.x(), q.y(), q.z()};
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    file.columns.push_back({fieldOf(path, field), field.offset, cloud.point_step});
   }
-  AtomicOutput output(path);
-  const QuietPcl quiet;
-  if (pcl::PCDWriter().writeBinaryCompressed(output.stream(), cloud, sensor_origin, sensor_orientation) < 0) {
-    throw Error(path.string(), "", "PCL could not write it");
-  }
-  output.commit();
+  file.bytes.assign(cloud.data.begin(), cloud.data.end());
+  writePcdCloud(path, file);
 }
 
-template pcl::PointCloud<pcl::PointXYZ> readPointCloud<pcl::PointXYZ>(const std::filesystem::path&);
-template pcl::PointCloud<pcl::PointXYZI> readPointCloud<pcl::PointXYZI>(const std::filesystem::path&);
-template pcl::PointCloud<pcl::PointXYZL> readPointCloud<pcl::PointXYZL>(const std::filesystem::path&);
+template pcl::PointCloud<pcl::PointXYZ> readPointCloud<pcl::PointXYZ>(const std::filesystem::path&, int);
+template pcl::PointCloud<pcl::PointXYZI> readPointCloud<pcl::PointXYZI>(const std::filesystem::path&, int);
+template pcl::PointCloud<pcl::PointXYZL> readPointCloud<pcl::PointXYZL>(const std::filesystem::path&, int);
 template void writePcd<pcl::PointXYZ>(const std::filesystem::path&, const pcl::PointCloud<pcl::PointXYZ>&);
 template void writePcd<pcl::PointXYZI>(const std::filesystem::path&, const pcl::PointCloud<pcl::PointXYZI>&);
 template void writePcd<pcl::PointXYZL>(const std::filesystem::path&, const pcl::PointCloud<pcl::PointXYZL>&);

@@ -1,5 +1,7 @@
 #include "map/map_metadata.h"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 
@@ -12,9 +14,10 @@ constexpr char kVersionKey[] = "software_version";
 constexpr char kSegmentationKey[] = "segmentation";
 constexpr char kKnown[] = "known";
 constexpr char kNone[] = "none";
-// Files of version 2 that were written before there were feet have neither key.
+// Options that older files of version 2 do not have. Before there were feet, nothing was one.
 constexpr std::string_view kFootAngleKey = "ground.foot_angle_deg";
-constexpr std::string_view kFootHeightKey = "ground.foot_height_m";
+constexpr std::string_view kLaterKeys[] = {kFootAngleKey, "ground.foot_height_m", "mounting_roll_deg",
+                                           "min_range_m", "max_range_m",          "vehicle_box_m"};
 constexpr double kNoFeetAngleDeg = 90.0;
 constexpr std::string_view kBetween = " = ";
 
@@ -93,10 +96,10 @@ std::optional<MetadataFault> readMetadata(std::string_view text, MapOrigin& orig
     return lines.fault();
   }
   SegmentationOptions options;
-  const bool knows_feet = lines.gives(kFootAngleKey) || lines.gives(kFootHeightKey);
-  if (!knows_feet) options.ground.foot_angle_deg = kNoFeetAngleDeg;
+  if (!lines.gives(kFootAngleKey)) options.ground.foot_angle_deg = kNoFeetAngleDeg;
   forEachField(options, [&](const std::string_view name, auto& value) {
-    if (!knows_feet && (name == kFootAngleKey || name == kFootHeightKey)) return;
+    const bool may_lack = std::find(std::begin(kLaterKeys), std::end(kLaterKeys), name) != std::end(kLaterKeys);
+    if (may_lack && !lines.gives(name)) return;
     lines.read(name, value);
   });
   try {

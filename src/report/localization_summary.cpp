@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "common/atomic_output.h"
@@ -68,10 +69,17 @@ void writeFrames(const std::filesystem::path& path, const DriveLocalization& run
   output.commit();
 }
 
-std::vector<double> stampsOf(const std::vector<StampedPose>& trajectory) {
-  std::vector<double> stamps_s;
-  for (const StampedPose& pose : trajectory) stamps_s.push_back(pose.stamp_s);
-  return stamps_s;
+/// The metrics of the pairs from `skip_s` after the first one on, where there are any. Pairs are of the same scan,
+/// whatever the stamps say.
+std::optional<TrajectoryMetrics> metricsAfter(double skip_s, std::vector<PosePair> pairs) {
+  constexpr double kStampRounding_s = 1e-6;
+  double first_s = std::numeric_limits<double>::infinity();
+  for (const PosePair& pair : pairs) first_s = std::min(first_s, pair.stamp_s);
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
+                             [&](const PosePair& pair) { return pair.stamp_s < first_s + skip_s - kStampRounding_s; }),
+              pairs.end());
+  if (pairs.empty()) return std::nullopt;
+  return evaluatePosePairs(pairs);
 }
 
 void addStates(const DriveLocalization& run, LocalizationSummary& summary) {
@@ -120,15 +128,12 @@ LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptio
   summary.threads = internal::threadCount(options.alignment.threads);
   if (!run.T_map_lidar_reference.empty()) {
     const Eigen::Isometry3d T_lidar_base = options.T_base_lidar.inverse();
-    std::vector<StampedPose> reference, estimate;
+    std::vector<PosePair> pairs;
     for (std::size_t i = 0; i < run.results.size(); ++i) {
       if (!run.results[i].track.pose_known) continue;
-      reference.push_back({run.results[i].stamp_s, run.T_map_lidar_reference[i] * T_lidar_base});
-      estimate.push_back({run.results[i].stamp_s, run.results[i].T_map_base});
+      pairs.push_back({run.results[i].stamp_s, run.T_map_lidar_reference[i] * T_lidar_base, run.results[i].T_map_base});
     }
-    if (!estimate.empty() && anyScanAfterSkip(stampsOf(estimate), skip_s)) {
-      summary.metrics = evaluateTrajectory(reference, estimate, skip_s);
-    }
+    summary.metrics = metricsAfter(skip_s, pairs);
   }
   return summary;
 }

@@ -15,17 +15,17 @@ float tangent(double degrees) { return static_cast<float>(std::tan(radiansFromDe
 
 }  // namespace
 
-void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
+void GroundDetection::detect(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options,
                              std::vector<std::uint8_t>& ground) {
   if (options.rule == GroundRule::INCLINATION) {
     detectByInclination(image, sensor, options, ground);
     return;
   }
   const auto columns = static_cast<std::size_t>(image.columns());
-  const float sensor_height = estimatedSensorHeight(image, options);
+  sensor_height_ = estimatedSensorHeight(image, options);
   last_range_.assign(columns, 0.0F);
-  last_height_.assign(columns, -sensor_height);
-  profile_height_.assign(columns, -sensor_height);
+  last_height_.assign(columns, -sensor_height_);
+  profile_height_.assign(columns, -sensor_height_);
   states_.resize(image.range().size());
   no_returns_.assign(columns, 0);
   neighbour_sums_.returns.resize(columns + 2);
@@ -36,7 +36,7 @@ void GroundDetection::detect(const RangeImage& image, const SensorModel& sensor,
   for (int row = 0; row < image.rows(); ++row) settle(image, row, options.smooths, neighbour_sums_, ground);
 }
 
-void GroundDetection::detectByInclination(const RangeImage& image, const SensorModel& sensor,
+void GroundDetection::detectByInclination(const PixelImage& image, const SensorModel& sensor,
                                           const GroundOptions& options, std::vector<std::uint8_t>& ground) {
   ground.assign(image.range().size(), 0);
   const float limit = tangent(options.inclination_limit_deg);
@@ -54,7 +54,7 @@ void GroundDetection::detectByInclination(const RangeImage& image, const SensorM
   }
 }
 
-float GroundDetection::estimatedSensorHeight(const RangeImage& image, const GroundOptions& options) {
+float GroundDetection::estimatedSensorHeight(const PixelImage& image, const GroundOptions& options) {
   if (options.sensor_height_m > 0.0) return static_cast<float>(options.sensor_height_m);
   // The lowest level pair of returns of a column lies on the ground in most of the columns. Some of them will do; how
   // far apart is a prime number, since a sensor may leave every other column empty.
@@ -80,7 +80,7 @@ float GroundDetection::estimatedSensorHeight(const RangeImage& image, const Grou
   return -*middle;
 }
 
-void GroundDetection::grow(const RangeImage& image, const GroundOptions& options, std::size_t first_column,
+void GroundDetection::grow(const PixelImage& image, const GroundOptions& options, std::size_t first_column,
                            std::size_t columns) {
   const GrowthLimits limits = {tangent(options.slope_deg), static_cast<float>(options.step_tolerance_m),
                                static_cast<float>(options.profile_tolerance_m)};
@@ -93,7 +93,7 @@ void GroundDetection::grow(const RangeImage& image, const GroundOptions& options
   }
 }
 
-void GroundDetection::doubtFeet(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options) {
+void GroundDetection::doubtFeet(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options) {
   const auto columns = static_cast<std::size_t>(image.columns());
   obstacle_range_.assign(columns, 0.0F);
   obstacle_height_.assign(columns, std::numeric_limits<float>::infinity());
@@ -110,7 +110,7 @@ void GroundDetection::doubtFeet(const RangeImage& image, const SensorModel& sens
   }
 }
 
-void GroundDetection::settle(const RangeImage& image, int row, bool smooths, NeighbourSums& sums,
+void GroundDetection::settle(const PixelImage& image, int row, bool smooths, NeighbourSums& sums,
                              std::vector<std::uint8_t>& ground) const {
   const auto columns = static_cast<std::size_t>(image.columns());
   const std::size_t begin = static_cast<std::size_t>(row) * columns;

@@ -5,18 +5,21 @@
 
 #include "saw_ndt/common/sensor_model.h"
 #include "saw_ndt/segmentation/segmentation_options.h"
-#include "segmentation/range_image.h"
+#include "segmentation/pixel_image.h"
 
 namespace saw_ndt::internal {
 
-/// Finds ground in range images. Memory is kept from one image to the next.
+/// Finds ground in images of columns that lead outward. Memory is kept from one image to the next.
 class GroundDetection {
  public:
   /// Writes 1 for every pixel of the image that is ground and 0 for every other, row-major. The options have been
   /// checked, and the image was projected with the sensor model. In one thread: handing parts to others would take as
   /// long.
-  void detect(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
+  void detect(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options,
               std::vector<std::uint8_t>& ground);
+
+  /// Height of the sensor above the ground (m) that ground was followed from in the last image.
+  float sensorHeight() const { return sensor_height_; }
 
  private:
   /// Sums over three rows, with one column more at either side.
@@ -25,14 +28,15 @@ class GroundDetection {
     std::vector<std::uint8_t> ground;
   };
 
-  static void detectByInclination(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options,
+  static void detectByInclination(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options,
                                   std::vector<std::uint8_t>& ground);
-  float estimatedSensorHeight(const RangeImage& image, const GroundOptions& options);
-  void grow(const RangeImage& image, const GroundOptions& options, std::size_t first_column, std::size_t columns);
-  void doubtFeet(const RangeImage& image, const SensorModel& sensor, const GroundOptions& options);
-  void settle(const RangeImage& image, int row, bool smooths, NeighbourSums& sums,
+  float estimatedSensorHeight(const PixelImage& image, const GroundOptions& options);
+  void grow(const PixelImage& image, const GroundOptions& options, std::size_t first_column, std::size_t columns);
+  void doubtFeet(const PixelImage& image, const SensorModel& sensor, const GroundOptions& options);
+  void settle(const PixelImage& image, int row, bool smooths, NeighbourSums& sums,
               std::vector<std::uint8_t>& ground) const;
 
+  float sensor_height_ = 0.0F;
   std::vector<float> last_range_;
   std::vector<float> last_height_;
   std::vector<float> profile_height_;

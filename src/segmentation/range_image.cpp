@@ -44,14 +44,16 @@ void findNearest(std::size_t points, const std::int32_t* pixel_of_point, const f
 
 }  // namespace
 
-void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double mounting_pitch, int threads) {
+void RangeImage::project(const ScanView& scan, const SensorModel& sensor, const ScanProjection& projection,
+                         int threads) {
   sensor.check();
   if (scan.size > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
     throw std::invalid_argument("scan: more than 2^31 - 1 points");
   }
   rows_ = sensor.rows();
   columns_ = sensor.columns;
-  measure(scan, mounting_pitch, threads);
+  upside_down_ = projection.isUpsideDown();
+  measureScan(scan, projection, columns_, threads, points_);
   ring_index_.assign(scan, points_, sensor);
 
   const std::size_t pixels = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_);
@@ -69,7 +71,10 @@ void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double
   }
   run_of_row_.resize(static_cast<std::size_t>(rows_));
   for (int row = 0; row < rows_; ++row) run_of_row_[row] = {0, 0, static_cast<std::int16_t>(row)};
-  for (const RowRun& run : ring_index_.runs()) run_of_row_[run.row] = run;
+  for (RowRun run : ring_index_.runs()) {
+    if (upside_down_) run.row = static_cast<std::int16_t>(rows_ - 1 - run.row);
+    run_of_row_[run.row] = run;
+  }
   for (PixelReturns& returns : pixel_returns_) {
     returns.nearest.resize(static_cast<std::size_t>(columns_) + 1);
     returns.count.resize(static_cast<std::size_t>(columns_) + 1);
@@ -79,27 +84,6 @@ void RangeImage::project(const ScanView& scan, const SensorModel& sensor, double
   internal::forEachChunk(threads, (rows + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::size_t chunk, int worker) {
     const std::size_t end = std::min(rows, (chunk + 1) * kRowsAtOnce);
     for (std::size_t row = chunk * kRowsAtOnce; row < end; ++row) placeRun(run_of_row_[row], pixel_returns_[worker]);
-  });
-}
-
-void RangeImage::measure(const ScanView& scan, double mounting_pitch, int threads) {
-  constexpr std::size_t kBlock = PointMeasurements::kBlock;
-  const std::size_t blocks = (scan.size + kBlock - 1) / kBlock;
-  points_.column.resize(scan.size);
-  points_.range.resize(scan.size);
-  points_.horizontal_range.resize(scan.size);
-  points_.height.resize(scan.size);
-  points_.spans.resize(blocks);
-  const ProjectionGeometry geometry = {static_cast<float>(columns_) / static_cast<float>(2.0 * kPi),
-                                       static_cast<float>(columns_ - 1), static_cast<float>(std::cos(mounting_pitch)),
-                                       static_cast<float>(std::sin(mounting_pitch))};
-  constexpr std::size_t kBlocksAtOnce = 32;
-  internal::forEachChunk(threads, (blocks + kBlocksAtOnce - 1) / kBlocksAtOnce, [&](std::size_t chunk, int) {
-    const std::size_t begin = chunk * kBlocksAtOnce * kBlock;
-    const std::size_t count = std::min(scan.size - begin, kBlocksAtOnce * kBlock);
-    measurePoints(count, scan.stride, scan.point(begin), geometry,
-                  {points_.column.data() + begin, points_.range.data() + begin, points_.horizontal_range.data() + begin,
-                   points_.height.data() + begin, points_.spans.data() + chunk * kBlocksAtOnce});
   });
 }
 
@@ -116,7 +100,8 @@ void RangeImage::placeInAnyOrder(PixelReturns& returns) {
   const std::vector<std::int16_t>& row_of_point = ring_index_.rows();
   for (std::size_t i = 0; i < pixel_of_point_.size(); ++i) {
     const bool seen = points_.column[i] != PointMeasurements::kNoColumn && row_of_point[i] != RingIndex::kNoRow;
-    pixel_of_point_[i] = seen ? row_of_point[i] * columns_ + points_.column[i] : kNoPixel;
+    const int row = upside_down_ ? rows_ - 1 - row_of_point[i] : row_of_point[i];
+    pixel_of_point_[i] = seen ? row * columns_ + points_.column[i] : kNoPixel;
   }
   returns.nearest.resize(pixels + 1);
   returns.count.resize(pixels + 1);

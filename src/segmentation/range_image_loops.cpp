@@ -48,14 +48,17 @@ HWY_INLINE float azimuthOf(float x, float y) {
 HWY_INLINE void measureBlock(std::size_t count, const ProjectionGeometry geometry, const float* __restrict x,
                              const float* __restrict y, const float* __restrict z, std::uint16_t* __restrict column,
                              float* __restrict range, float* __restrict horizontal_range, float* __restrict height) {
+  const float least_squared_range = geometry.least_range * geometry.least_range;
+  const float greatest = geometry.greatest_range * geometry.greatest_range;
+  const float greatest_squared_range = greatest <= kGreatestFloat ? greatest : kGreatestFloat;
   for (std::size_t i = 0; i < count; ++i) {
     const float squared_range = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
     // Not a number compares false; an infinite coordinate, or one whose square overflows, gives infinity.
-    const bool valid = (squared_range > 0.0F) & (squared_range <= kGreatestFloat);
+    const bool valid = (squared_range > least_squared_range) & (squared_range <= greatest_squared_range);
     const float safe_squared_range = valid ? squared_range : 0.0F;
     const float place = azimuthOf(x[i], y[i]) * geometry.columns_per_radian;
     const float safe_place = valid ? place : 0.0F;
-    const float level_height = geometry.pitch_cosine * z[i] - geometry.pitch_sine * x[i];
+    const float level_height = geometry.up_z * z[i] + geometry.up_x * x[i] + geometry.up_y * y[i];
     const float squared_horizontal_range = safe_squared_range - level_height * level_height;
     const auto whole = static_cast<std::int32_t>(safe_place < geometry.last_column ? safe_place : geometry.last_column);
     column[i] = static_cast<std::uint16_t>(valid ? whole : kNoColumn);

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "segmentation/ring_index.h"
+#include "segmentation/point_measurements.h"
 
 namespace saw_ndt::internal {
 
@@ -11,8 +11,8 @@ namespace saw_ndt::internal {
 struct ProjectionGeometry {
   float columns_per_radian;
   float last_column;
-  float pitch_cosine;
-  float pitch_sine;
+  float up_x, up_y, up_z;  ///< the vertical, in the frame of the points
+  float least_range, greatest_range;
 };
 
 /// Where measurePoints() writes, each array beginning with the first of the points.

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt::internal {
 namespace {
-
-// A smaller fall is a point that parallax or motion compensation put behind its predecessor (10 degrees on KITTI).
-constexpr double kAzimuthFallOfNextRingDeg = 200.0;
 
 // Mean misfit of runs and beams above which a scan is not listed ring after ring: on KITTI it is below 0.6 degrees, and
 // above 5 where the points come in another order.
@@ -23,10 +20,7 @@ constexpr double kElevationMarginDeg = 1.5;
 
 constexpr std::size_t kSamplesOfRun = 32;
 constexpr std::size_t kSamplesOfScan = 2048;
-
-float elevationSine(const ScanView& scan, const PointMeasurements& points, std::size_t index) {
-  return scan.point(index)[2] / points.range[index];
-}
+constexpr double kMostRings = 1024.0;
 
 float medianOf(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -34,53 +28,36 @@ float medianOf(std::vector<float>& values) {
   return *middle;
 }
 
-// Where the next ring begins, if the azimuth falls at a point with y = 0. That is rounded from just before or just
-// after a whole turn: the point ends the ring above or begins the one below, whichever beam it fits. scan.size: no ring
-// begins.
-std::size_t ringStartAtSeam(const ScanView& scan, const PointMeasurements& points, std::size_t seam) {
-  std::size_t before = seam - 1;
-  while (points.range[before] <= 0.0F) --before;
-  std::size_t after = seam + 1;
-  while (after < scan.size && points.range[after] <= 0.0F) ++after;
-  if (after == scan.size) return scan.size;
-  const float sine = elevationSine(scan, points, seam);
-  const float to_ring_above = std::abs(sine - elevationSine(scan, points, before));
-  const float to_ring_below = std::abs(sine - elevationSine(scan, points, after));
-  return to_ring_above < to_ring_below ? after : seam;
-}
-
-bool isOrganized(const ScanView& scan, int rows) {
-  return scan.height > 1 && scan.height == static_cast<std::size_t>(rows) && scan.width * scan.height == scan.size;
+[[noreturn]] void refuseRing(double ring, std::size_t point, const SensorModel& sensor) {
+  std::ostringstream message;
+  message << "ring " << ring << " of point " << point << ": sensor model " << sensor.name << " has " << sensor.rows()
+          << " rows";
+  throw std::invalid_argument(message.str());
 }
 
 }  // namespace
 
 void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
-  if (isOrganized(scan, sensor.rows())) {
+  const auto rows = static_cast<std::size_t>(sensor.rows());
+  const bool is_organized = scan.height > 1 && scan.width * scan.height == scan.size;
+  runs_.clear();
+  if (is_organized && scan.height == rows) {
     source_ = VerticalIndexSource::ORGANIZED_ROW;
-    runs_.clear();
-    for (int row = 0; row < sensor.rows(); ++row) {
-      const std::size_t begin = static_cast<std::size_t>(row) * scan.width;
-      runs_.push_back({begin, begin + scan.width, static_cast<std::int16_t>(row)});
+    const auto row_of = [&](std::size_t point) { return point / scan.width; };
+    orderGroups(scan, points, rows, row_of, sensor);
+    for (std::size_t row = 0; row < rows; ++row) {
+      runs_.push_back({row * scan.width, (row + 1) * scan.width, row_of_group_[row]});
     }
-    if (!rowsRise(scan, points, sensor)) return;
-    for (RowRun& run : runs_) run.row = static_cast<std::int16_t>(sensor.rows() - 1 - run.row);
+  } else if (is_organized && scan.width == rows) {
+    source_ = VerticalIndexSource::ORGANIZED_COLUMN;
+    const auto row_of = [&](std::size_t point) { return point % scan.width; };
+    orderGroups(scan, points, rows, row_of, sensor);
+    rows_.resize(scan.size);
+    for (std::size_t i = 0; i < scan.size; ++i) rows_[i] = row_of_group_[row_of(i)];
   } else if (scan.rings.known()) {
     source_ = VerticalIndexSource::RING_FIELD;
-    rows_.resize(scan.size);
-    for (std::size_t i = 0; i < scan.size; ++i) {
-      const double ring = scan.rings[i];
-      if (!(ring >= 0.0 && ring < sensor.rows())) {
-        std::ostringstream message;
-        message << "ring " << ring << " of point " << i << ": sensor model " << sensor.name << " has " << sensor.rows()
-                << " rows";
-        throw std::invalid_argument(message.str());
-      }
-      rows_[i] = static_cast<std::int16_t>(ring);
-    }
-    if (!rowsRise(scan, points, sensor)) return;
-    for (std::int16_t& row : rows_) row = static_cast<std::int16_t>(sensor.rows() - 1 - row);
-  } else if (findRuns(scan, points, sensor) && matchRunsToBeams(scan, points, sensor)) {
+    assignFromRings(scan, points, sensor);
+  } else if (findRuns(scan, points, sensor.columns, rows, runs_) && matchRunsToBeams(scan, points, sensor)) {
     source_ = VerticalIndexSource::FILE_ORDER;
   } else {
     source_ = VerticalIndexSource::ELEVATION_TABLE;
@@ -88,42 +65,90 @@ void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, co
   }
 }
 
-bool RingIndex::findRuns(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
-  const auto most_runs = static_cast<std::size_t>(sensor.rows());
-  const auto fall = static_cast<std::int32_t>(sensor.columns * (kAzimuthFallOfNextRingDeg / 360.0));
-  std::int32_t previous_column = -1;
-  runs_.clear();
-  runs_.reserve(most_runs);
-  runs_.push_back({0, scan.size, 0});
-  for (std::size_t block = 0; block < points.spans.size(); ++block) {
-    const ColumnSpan span = points.spans[block];
-    if (span.least > span.greatest) continue;
-    const std::size_t begin = block * PointMeasurements::kBlock;
-    const std::size_t end = std::min(begin + PointMeasurements::kBlock, scan.size);
-    if (std::max<std::int32_t>(previous_column, span.greatest) - span.least <= fall) {
-      std::size_t last = end - 1;
-      while (points.column[last] == PointMeasurements::kNoColumn) --last;
-      previous_column = points.column[last];
-      continue;
-    }
-    for (std::size_t i = begin; i < end; ++i) {
-      if (points.column[i] == PointMeasurements::kNoColumn) continue;
-      const bool falls = points.column[i] < previous_column - fall;
-      previous_column = points.column[i];
-      if (!falls) continue;
-      const std::size_t start = scan.point(i)[1] == 0.0F ? ringStartAtSeam(scan, points, i) : i;
-      if (start == scan.size) continue;
-      if (runs_.size() == most_runs) return false;
-      runs_.back().end = start;
-      runs_.push_back({start, scan.size, 0});
-    }
+void RingIndex::assignFromRings(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
+  rows_.resize(scan.size);
+  std::size_t groups = static_cast<std::size_t>(sensor.rows());
+  for (std::size_t i = 0; i < scan.size; ++i) {
+    const double ring = scan.rings[i];
+    if (!(ring >= 0.0 && ring < kMostRings)) refuseRing(ring, i, sensor);
+    rows_[i] = static_cast<std::int16_t>(ring);
+    groups = std::max(groups, static_cast<std::size_t>(rows_[i]) + 1);
   }
-  return true;
+  orderGroups(
+      scan, points, groups, [&](std::size_t point) { return static_cast<std::size_t>(rows_[point]); }, sensor);
+  for (std::size_t i = 0; i < scan.size; ++i) {
+    const std::int16_t row = row_of_group_[static_cast<std::size_t>(rows_[i])];
+    if (row == kNoRow) refuseRing(scan.rings[i], i, sensor);
+    rows_[i] = row;
+  }
+}
+
+// Groups are numbered from the top, from the bottom, or in some other order, as the lasers of a Velodyne are.
+template <typename GroupOfPoint>
+void RingIndex::orderGroups(const ScanView& scan, const PointMeasurements& points, std::size_t groups,
+                            const GroupOfPoint& group_of_point, const SensorModel& sensor) {
+  // A prime, so that a scan in firing order has samples of every beam.
+  constexpr std::size_t kSampleStep = 7;
+  group_sums_.assign(groups, {});
+  for (std::size_t i = 0; i<scan.size; i += scan.size> kSamplesOfScan ? kSampleStep : 1) {
+    if (points.range[i] <= 0.0F) continue;
+    GroupSum& sum = group_sums_[group_of_point(i)];
+    sum.sine += points.elevationSine(scan, i);
+    ++sum.points;
+  }
+  group_order_.clear();
+  const auto rows = static_cast<std::size_t>(sensor.rows());
+  float falling_misfit = 0.0F, rising_misfit = 0.0F;  // of rows that fall as group numbers rise, from the top, and back
+  for (std::size_t group = 0; group < groups; ++group) {
+    GroupSum& sum = group_sums_[group];
+    if (sum.points == 0) continue;
+    const float sine = sum.sine / static_cast<float>(sum.points);
+    sum.elevation_deg = static_cast<float>(degreesFromRadians(std::asin(std::clamp(sine, -1.0F, 1.0F))));
+    group_order_.push_back(group);
+    if (group >= rows) continue;
+    falling_misfit += std::abs(sum.elevation_deg - static_cast<float>(sensor.elevations_deg[group]));
+    rising_misfit += std::abs(sum.elevation_deg - static_cast<float>(sensor.elevations_deg[rows - 1 - group]));
+  }
+  row_of_group_.assign(groups, kNoRow);
+  const bool falls = falling_misfit <= rising_misfit;
+  const auto by_number = [&] {
+    for (std::size_t group = 0; group < std::min(groups, rows); ++group) {
+      row_of_group_[group] = static_cast<std::int16_t>(falls ? group : rows - 1 - group);
+    }
+  };
+  const float misfit = std::min(falling_misfit, rising_misfit) / static_cast<float>(group_order_.size());
+  const double spacing = (sensor.elevations_deg.front() - sensor.elevations_deg.back()) /
+                         static_cast<double>(std::max<std::size_t>(1, rows - 1));
+  if (groups == rows && (group_order_.empty() || misfit <= 0.5 * spacing)) return by_number();
+
+  std::sort(group_order_.begin(), group_order_.end(), [&](std::size_t a, std::size_t b) {
+    return std::make_pair(-group_sums_[a].elevation_deg, a) < std::make_pair(-group_sums_[b].elevation_deg, b);
+  });
+  run_elevations_.clear();
+  for (const std::size_t group : group_order_) run_elevations_.push_back(group_sums_[group].elevation_deg);
+  // An order that is not much better is chance: then the beams are not those of the sensor.
+  constexpr float kClearlyBetter = 0.5F;
+  const float sorted_misfit = beams_.match(run_elevations_, {}, sensor);
+  if (groups == rows && !(sorted_misfit < kClearlyBetter * misfit)) return by_number();
+  if (std::isinf(sorted_misfit)) return by_number();
+  std::vector<std::uint8_t>& taken = row_is_taken_;
+  taken.assign(rows, 0);
+  for (std::size_t i = 0; i < group_order_.size(); ++i) {
+    row_of_group_[group_order_[i]] = beams_.rows()[i];
+    taken[static_cast<std::size_t>(beams_.rows()[i])] = 1;
+  }
+  // Groups that were not sampled have the rows that are left.
+  std::size_t free_row = 0;
+  for (std::int16_t& row : row_of_group_) {
+    if (row != kNoRow) continue;
+    while (free_row < rows && taken[free_row] != 0) ++free_row;
+    if (free_row == rows) break;
+    row = static_cast<std::int16_t>(free_row++);
+  }
 }
 
 bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
   const std::size_t runs = runs_.size();
-  const auto rows = static_cast<std::size_t>(sensor.rows());
   run_elevations_.resize(runs);
   run_spreads_.resize(runs);
   for (std::size_t run = 0; run < runs; ++run) {
@@ -132,7 +157,7 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
     samples_.clear();
     samples_.reserve(2 * kSamplesOfRun);
     for (std::size_t i = runs_[run].begin; i < end; i += step) {
-      if (points.range[i] > 0.0F) samples_.push_back(elevationSine(scan, points, i));
+      if (points.range[i] > 0.0F) samples_.push_back(points.elevationSine(scan, i));
     }
     if (samples_.empty()) samples_.push_back(0.0F);
     const float median = medianOf(samples_);
@@ -141,30 +166,13 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
     run_spreads_[run] = static_cast<float>(degreesFromRadians(medianOf(samples_)));
   }
 
-  // Rows rise with runs: the cheapest such assignment, by dynamic programming over (run, row).
-  const float unreachable = std::numeric_limits<float>::infinity();
-  costs_.assign(rows + 1, 0.0F);  // costs_[row]: the cheapest assignment of the runs so far to rows before `row`
-  taken_.assign(runs * rows, 0);
-  for (std::size_t run = 0; run < runs; ++run) {
-    float before = costs_[0];
-    costs_[0] = unreachable;
-    for (std::size_t row = 0; row < rows; ++row) {
-      const auto beam = static_cast<float>(sensor.elevations_deg[row]);
-      const float here = before + std::abs(run_elevations_[run] - beam) + run_spreads_[run];
-      before = costs_[row + 1];
-      taken_[run * rows + row] = here < costs_[row] ? 1 : 0;
-      costs_[row + 1] = std::min(here, costs_[row]);
-    }
+  const bool rises = run_elevations_.front() < run_elevations_.back();
+  if (rises) {
+    std::reverse(run_elevations_.begin(), run_elevations_.end());
+    std::reverse(run_spreads_.begin(), run_spreads_.end());
   }
-  if (!(costs_[rows] <= kGreatestMeanMisfitDeg * static_cast<float>(runs))) return false;
-
-  std::size_t row = rows;
-  for (std::size_t run = runs; run-- > 0;) {
-    do {
-      --row;
-    } while (taken_[run * rows + row] == 0);
-    runs_[run].row = static_cast<std::int16_t>(row);
-  }
+  if (!(beams_.match(run_elevations_, run_spreads_, sensor) <= kGreatestMeanMisfitDeg)) return false;
+  for (std::size_t run = 0; run < runs; ++run) runs_[rises ? runs - 1 - run : run].row = beams_.rows()[run];
   return true;
 }
 
@@ -182,30 +190,11 @@ void RingIndex::assignFromElevation(const ScanView& scan, const PointMeasurement
   for (std::size_t i = 0; i < scan.size; ++i) {
     rows_[i] = kNoRow;
     if (points.range[i] <= 0.0F) continue;
-    const float point_sine = elevationSine(scan, points, i);
+    const float point_sine = points.elevationSine(scan, i);
     if (point_sine > greatest || point_sine < least) continue;
     const auto below = std::upper_bound(beam_sines_.begin(), beam_sines_.end(), point_sine, std::greater<float>());
     rows_[i] = static_cast<std::int16_t>(below - beam_sines_.begin());
   }
-}
-
-bool RingIndex::rowsRise(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) const {
-  const std::size_t step = std::max<std::size_t>(1, scan.size / kSamplesOfScan);
-  const double middle_row = 0.5 * (sensor.rows() - 1);
-  double rows = 0.0;
-  double sines = 0.0;
-  double products = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < scan.size; i += step) {
-    if (points.range[i] <= 0.0F) continue;
-    const double row = (rowAfterRow() ? static_cast<std::int16_t>(i / scan.width) : rows_[i]) - middle_row;
-    const double sine = elevationSine(scan, points, i);
-    rows += row;
-    sines += sine;
-    products += row * sine;
-    count += 1.0;
-  }
-  return products * count > rows * sines;
 }
 
 }  // namespace saw_ndt::internal

@@ -52,6 +52,7 @@ bool parseField(std::string_view text, GroundRule& value) {
 }
 bool parseField(std::string_view text, std::vector<double>& values) {
   values.clear();
+  if (text.empty()) return true;
   while (true) {
     const std::size_t space = text.find(' ');
     if (!parseField(text.substr(0, space), values.emplace_back())) return false;

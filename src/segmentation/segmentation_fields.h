@@ -17,6 +17,10 @@ void forEachField(Options& options, const Visit& visit) {
   visit("sensor.columns", options.sensor.columns);
   visit("sensor.elevations_deg", options.sensor.elevations_deg);
   visit("mounting_pitch_deg", options.mounting_pitch_deg);
+  visit("mounting_roll_deg", options.mounting_roll_deg);
+  visit("min_range_m", options.min_range_m);
+  visit("max_range_m", options.max_range_m);
+  visit("vehicle_box_m", options.vehicle_box_m);
   visit("ground.rule", options.ground.rule);
   visit("ground.inclination_limit_deg", options.ground.inclination_limit_deg);
   visit("ground.inclination_top_elevation_deg", options.ground.inclination_top_elevation_deg);

@@ -1,6 +1,7 @@
 #include "saw_ndt/segmentation/segmentation_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "saw_ndt/common/error.h"
@@ -49,6 +50,17 @@ void SegmentationOptions::check() const {
   sensor.check();
   checkOption(mounting_pitch_deg >= -90.0 && mounting_pitch_deg <= 90.0, "mounting_pitch_deg", mounting_pitch_deg,
               "-90 to 90");
+  checkOption(mounting_roll_deg >= -180.0 && mounting_roll_deg <= 180.0, "mounting_roll_deg", mounting_roll_deg,
+              "-180 to 180");
+  checkOption(min_range_m >= 0.0 && std::isfinite(min_range_m), "min_range_m", min_range_m, "0 or more");
+  checkOption(max_range_m > min_range_m, "max_range_m", max_range_m, "greater than min_range_m");
+  checkOption(vehicle_box_m.empty() || vehicle_box_m.size() == 6, "vehicle_box_m.size()", vehicle_box_m.size(),
+              "6 numbers or none");
+  for (std::size_t i = 0; i < vehicle_box_m.size(); ++i) {
+    const double value = vehicle_box_m[i];
+    checkOption(std::isfinite(value) && (i < 3 || value >= vehicle_box_m[i - 3]), "vehicle_box_m", value,
+                "least x, y, z, then greatest x, y, z");
+  }
   ground.check();
   components.check();
 }

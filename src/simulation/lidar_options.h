@@ -13,11 +13,16 @@ struct LidarOptions {
   /// The beams. Its name also fixes each beam's azimuth within a firing and constant range error: the same in every
   /// drive.
   SensorModel sensor = SensorModel::named("HDL-64E");
-  int firings_per_turn = 2083;  ///< of each beam
-  double scan_period_s = 0.1;   ///< time of a turn
-  double min_range_m = 1.0;     ///< nearer returns are lost
-  double max_range_m = 80.0;    ///< farther returns are lost
-  /// What of the vehicle itself hides the view, in the LiDAR's frame (m); empty: nothing. A van's roof.
+  int firings_per_turn = 2083;       ///< of each beam
+  double scan_period_s = 0.1;        ///< time of a turn
+  double field_of_view_deg = 360.0;  ///< of azimuth, half on either side of the LiDAR's x axis
+  double min_range_m = 1.0;          ///< nearer returns are lost
+  double max_range_m = 80.0;         ///< farther returns are lost
+  /// How the LiDAR is turned on the vehicle: first about its x axis, positive raising its left side, 180 hanging upside
+  /// down; then about the vehicle's y axis, by which its x axis points below the horizon.
+  double mounting_roll_deg = 0.0, mounting_pitch_deg = 0.0;
+  /// What of the vehicle itself hides the view (m), in the frame of a LiDAR that is not turned; empty: nothing. A van's
+  /// roof.
   Eigen::AlignedBox3f own_vehicle{Eigen::Vector3f(-1.05f, -0.5f, -1.5f), Eigen::Vector3f(0.92f, 0.5f, -0.35f)};
 
   double range_noise_m = 0.015;       ///< standard deviation of one return
@@ -45,6 +50,12 @@ struct LidarOptions {
   /// @throws std::invalid_argument that names the field
   void check() const;
 
+  /// The rotation that the mounting is: from the LiDAR to the axes of the vehicle.
+  Eigen::Matrix3d R_vehicle_lidar() const;
+
+  /// The options of a sensor: those of the data sheet of the LiDAR of its name, or of any LiDAR of medium range that
+  /// fires once a column.
+  static LidarOptions of(const SensorModel& sensor);
   /// The options of a sensor of SensorModel::named(). @throws std::invalid_argument that lists the known ones
   static LidarOptions named(const std::string& sensor);
 };

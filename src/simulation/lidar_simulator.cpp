@@ -77,6 +77,7 @@ class LidarSimulator::Parts {
   RayCaster caster_;
   ReturnModel model_;
   BeamConstants beams_;
+  Eigen::Matrix3f R_vehicle_lidar_;
   std::vector<Eigen::Vector2d> firing_directions_;  ///< cosine and sine of the azimuth of each firing
   std::vector<RingHits> rings_;
   std::vector<RingReturns> returns_;
@@ -88,6 +89,7 @@ LidarSimulator::Parts::Parts(const Scene& scene, const LidarOptions& lidar_optio
       caster_(scene),
       model_(options, scene.materials),
       beams_(beamConstants(options)),
+      R_vehicle_lidar_(options.R_vehicle_lidar().cast<float>()),
       rings_(static_cast<std::size_t>(options.sensor.rows())),
       returns_(rings_.size()) {
   for (int firing = 0; firing < options.firings_per_turn; ++firing) {
@@ -159,7 +161,7 @@ void LidarSimulator::Parts::fireRing(const PoseKnots& poses, int scan, int ring,
     RayHit& hit = own.hits[firing];
     if (hit.isHit()) hit.normal = R_lidar_scene * hit.normal;
     if (!hidden) continue;
-    const float range_m = rangeOfBox(options.own_vehicle, own.directions[firing]);
+    const float range_m = rangeOfBox(options.own_vehicle, R_vehicle_lidar_ * own.directions[firing]);
     if (range_m < hit.range_m) hit = {range_m, -own.directions[firing], model_.ownVehicleMaterial()};
   }
 }

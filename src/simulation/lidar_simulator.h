@@ -23,8 +23,9 @@ struct LidarScan {
 ///
 /// It turns counter-clockwise seen from above and looks forward at the stamp of a scan: azimuths from -pi to pi are
 /// fired from half a scan period before the stamp to half a period after it. What moves in the scene is seen where it
-/// is at that time; see LidarOptions::rolling_shutter for the motion of the LiDAR itself. The same scene, options and
-/// motion give the same bytes, for any number of threads.
+/// is at that time; see LidarOptions::rolling_shutter for the motion of the LiDAR itself. The poses of the motion are
+/// those of the LiDAR as it is mounted: VehicleMotion::withMounting(). The same scene, options and motion give the same
+/// bytes, for any number of threads.
 class LidarSimulator {
  public:
   /// @param threads  that cast rays; 0: all cores

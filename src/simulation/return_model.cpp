@@ -125,6 +125,8 @@ void ReturnModel::measure(const std::vector<RingHits>& rings, int ring, RandomEn
   const auto firings = static_cast<std::ptrdiff_t>(own.hits.size());
   const auto azimuth_spacing_rad =
       static_cast<float>(2.0 * kPi / static_cast<double>(firings) * std::cos(radiansFromDegrees(elevations_deg[ring])));
+  // Rays beside the field of view are only what those at its edges have beside them.
+  const double half_view = options_.field_of_view_deg / 720.0 * static_cast<double>(firings);
 
   const auto around = [firings](std::ptrdiff_t firing) {
     return static_cast<std::size_t>(firing < 0 ? firing + firings : firing >= firings ? firing - firings : firing);
@@ -152,6 +154,7 @@ void ReturnModel::measure(const std::vector<RingHits>& rings, int ring, RandomEn
     returns->semantic_classes.push_back(semantic_class);
   };
   for (std::ptrdiff_t firing = 0; firing < firings; ++firing) {
+    if (static_cast<double>(std::min(firing, firings - firing)) > half_view) continue;
     if (rain_share > 0.0F && uniform(random) < rain_share) {
       const float range_m = droplet_range_m(random);
       if (range_m < own.hits[firing].range_m) {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "common/input_file.h"
+#include "report/member_reader.h"
 #include "saw_ndt/common/error.h"
 #include "simulation/object_meshes.h"
 
@@ -16,84 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads the members of a JSON object and remembers which; what goes wrong is an Error that names file and member.
-class MemberReader {
- public:
-  MemberReader(const json& object, std::string file, std::string place)
-      : object_(object), file_(std::move(file)), place_(std::move(place)) {
-    if (!object.is_object()) throw Error(file_, place_, "must be an object");
-  }
-
-  void read(const char* name, double& value) {
-    if (const json* member = find(name)) value = number(*member, name);
-  }
-  void read(const char* name, bool& value) {
-    if (const json* member = find(name)) {
-      if (!member->is_boolean()) fail(name, "must be true or false");
-      value = member->get<bool>();
-    }
-  }
-  void read(const char* name, std::string& value) {
-    if (const json* member = find(name)) {
-      if (!member->is_string()) fail(name, "must be a text");
-      value = member->get<std::string>();
-    }
-  }
-  /// A number or [least, greatest].
-  void read(const char* name, ValueRange& range) {
-    const json* member = find(name);
-    if (member == nullptr) return;
-    if (member->is_array() && member->size() == 2) {
-      range = {number((*member)[0], name), number((*member)[1], name)};
-    } else {
-      range.min = range.max = number(*member, name);
-    }
-  }
-  template <typename Element>
-  void read(const char* name, Element& element, void (*read_element)(MemberReader&, Element&)) {
-    if (const json* member = find(name)) readObject(*member, placeOf(name), element, read_element);
-  }
-  template <typename Element>
-  void read(const char* name, std::vector<Element>& elements, void (*read_element)(MemberReader&, Element&)) {
-    const json* member = find(name);
-    if (member == nullptr) return;
-    if (!member->is_array()) fail(name, "must be a list");
-    for (const json& item : *member) {
-      readObject(item, placeOf(name) + "[" + std::to_string(elements.size()) + "]", elements.emplace_back(),
-                 read_element);
-    }
-  }
-  /// @throws Error where a member was not read
-  void finish() const {
-    for (const auto& item : object_.items()) {
-      if (read_.count(item.key()) == 0) fail(item.key().c_str(), "is unknown");
-    }
-  }
-
- private:
-  template <typename Element>
-  void readObject(const json& object, const std::string& place, Element& element,
-                  void (*read_element)(MemberReader&, Element&)) {
-    MemberReader reader(object, file_, place);
-    read_element(reader, element);
-    reader.finish();
-  }
-  const json* find(const char* name) {
-    read_.insert(name);
-    const auto found = object_.find(name);
-    return found == object_.end() ? nullptr : &*found;
-  }
-  double number(const json& value, const char* name) const {
-    if (!value.is_number()) fail(name, "must be a number");
-    return value.get<double>();
-  }
-  std::string placeOf(const char* name) const { return place_.empty() ? name : place_ + "." + name; }
-  [[noreturn]] void fail(const char* name, const char* reason) const { throw Error(file_, placeOf(name), reason); }
-
-  const json& object_;
-  std::string file_, place_;
-  std::set<std::string> read_;
-};
+void readRange(MemberReader& reader, const char* name, ValueRange& range) {
+  reader.readRange(name, range.min, range.max);
+}
 
 void readRoad(MemberReader& reader, RoadDescription& road) {
   reader.read("left_m", road.left_m);
@@ -118,19 +43,19 @@ void readCourseElement(MemberReader& reader, CourseElement& element) {
 
 template <typename Sized>
 void readSize(MemberReader& reader, Sized& element) {
-  reader.read("length_m", element.length_m);
-  reader.read("width_m", element.width_m);
-  reader.read("height_m", element.height_m);
+  readRange(reader, "length_m", element.length_m);
+  readRange(reader, "width_m", element.width_m);
+  readRange(reader, "height_m", element.height_m);
 }
 
 void readRow(MemberReader& reader, ObjectRow& row) {
   reader.read("object", row.object);
   reader.read("left", row.left);
   reader.read("right", row.right);
-  reader.read("from_edge_m", row.from_edge_m);
-  reader.read("along_m", row.along_m);
-  reader.read("spacing_m", row.spacing_m);
-  reader.read("section_m", row.section_m);
+  readRange(reader, "from_edge_m", row.from_edge_m);
+  readRange(reader, "along_m", row.along_m);
+  readRange(reader, "spacing_m", row.spacing_m);
+  readRange(reader, "section_m", row.section_m);
   reader.read("probability", row.probability);
   readSize(reader, row);
   reader.read("heading_deg", row.heading_deg);
@@ -140,10 +65,10 @@ void readRow(MemberReader& reader, ObjectRow& row) {
 
 void readStream(MemberReader& reader, TrafficStream& stream) {
   reader.read("object", stream.object);
-  reader.read("lateral_m", stream.lateral_m);
-  reader.read("speed_mps", stream.speed_mps);
+  readRange(reader, "lateral_m", stream.lateral_m);
+  readRange(reader, "speed_mps", stream.speed_mps);
   reader.read("per_km", stream.per_km);
-  reader.read("headway_s", stream.headway_s);
+  readRange(reader, "headway_s", stream.headway_s);
   readSize(reader, stream);
 }
 

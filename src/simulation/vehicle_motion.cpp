@@ -44,4 +44,10 @@ Eigen::Isometry3d VehicleMotion::poseAt(double stamp_s) const {
   return T_scene_before * T_before_now;
 }
 
+VehicleMotion VehicleMotion::withMounting(const Eigen::Matrix3d& R_vehicle_lidar) const {
+  VehicleMotion result = *this;
+  for (Eigen::Isometry3d& T : result.T_scene_lidar) T.rotate(R_vehicle_lidar);
+  return result;
+}
+
 }  // namespace saw_ndt

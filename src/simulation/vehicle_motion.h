@@ -15,6 +15,8 @@ struct VehicleMotion {
   /// velocity and turn rate as seen from the LiDAR. @throws std::invalid_argument that names the stamp: farther beyond,
   /// less than two scans, stamps that do not increase
   Eigen::Isometry3d poseAt(double stamp_s) const;
+  /// The same drive with the LiDAR turned in its place; see LidarOptions::R_vehicle_lidar().
+  VehicleMotion withMounting(const Eigen::Matrix3d& R_vehicle_lidar) const;
 };
 
 }  // namespace saw_ndt

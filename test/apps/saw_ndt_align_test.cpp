@@ -74,6 +74,18 @@ TEST_F(AlignApp, FindsTheTransformWithAndWithoutLabels) {
   }
 }
 
+TEST_F(AlignApp, LabelsOfOthersDoNotMatterWhereTheyAreNotUsed) {
+  for (const std::string name : {"source", "target"}) {
+    auto cloud = readPointCloud<pcl::PointXYZL>(folder.path() / (name + ".pcd"));
+    for (pcl::PointXYZL& point : cloud) point.label = 40;
+    writePcd(folder.path() / ("classes_" + name + ".pcd"), cloud);
+  }
+  const std::string files = quoted("classes_source.pcd") + quoted("classes_target.pcd");
+  EXPECT_EQ(run(files).exit_code, 1);
+  EXPECT_EQ(jsonOf(files + "-classical"), jsonOf(quoted("source.pcd") + quoted("target.pcd") + "-classical"));
+  EXPECT_EQ(jsonOf(quoted("plain_source.pcd") + quoted("classes_target.pcd")).at("weighted"), false);
+}
+
 TEST_F(AlignApp, EveryWayToSearchEndsAtTheSamePose) {
   const std::string files = quoted("source.pcd") + quoted("target.pcd");
   for (const std::string neighbors : {"radius", "direct26", "direct7", "direct1"}) {

@@ -48,6 +48,25 @@ TEST_F(BuildMapApp, ThreadsAndOrderDoNotChangeABit) {
   EXPECT_TRUE(contentOf(map_file) == expected);
 }
 
+TEST_F(BuildMapApp, AScanThatCannotBeReadIsLeftOutAndTheOthersAreKept) {
+  const std::string scan = contentOf(drive_folder / "velodyne" / "000000.bin");
+  ASSERT_EQ(build("-scans 1:").exit_code, 0);
+  const std::string expected = contentOf(map_file);
+  const std::pair<std::string, std::string> damages[] = {{scan.substr(0, 1003), "000000.bin: offset 992: "},
+                                                         {"", "000000.bin: offset 0: the file is empty"}};
+  for (const auto& [content, reason] : damages) {
+    replace("velodyne/000000.bin", content);
+    const AppResult result = build();
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.errors.find("saw_ndt_build_map: "), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find(": left out\n"), std::string::npos) << result.errors;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    EXPECT_NE(result.output.find("of 5 scans, 1 left out\n"), std::string::npos) << result.output;
+    EXPECT_TRUE(contentOf(map_file) == expected);
+  }
+}
+
 TEST_F(BuildMapApp, WrongUsageIsNamed) {
   expectBuildFails(2, {"-resolution"}, "-resolution fine");
   expectBuildFails(2, {"resolution", "-1"}, "-resolution -1");
@@ -82,9 +101,10 @@ TEST_F(BuildMapApp, FailuresNameTheFileAndLeaveAnOldMapAlone) {
 
   const std::string scan = contentOf(drive_folder / "velodyne" / "000003.bin");
   replace("velodyne/000003.bin", scan.substr(0, 1003));
-  expectBuildFails(1, {"000003.bin: offset 992"});
+  expectBuildFails(1, {"000003.bin: offset 992"}, "-strict");
   replace("velodyne/000003.bin", "");
-  expectBuildFails(1, {"000003.bin: offset 0: the file is empty"});
+  expectBuildFails(1, {"000003.bin: offset 0: the file is empty"}, "-strict");
+  expectBuildFails(1, {"000003.bin: offset 0: the file is empty, and no other scan"}, "-scans 3");
   replace("velodyne/000003.bin", scan);
 
   replace("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\n");

@@ -75,6 +75,51 @@ TEST_F(EvaluateApp, AgreesWithEvosAbsolutePoseError) {
   }
 }
 
+TEST_F(EvaluateApp, OddStampsAreSaid) {
+  std::string seconds, nanoseconds, equal, rounded, standing, falling;
+  for (int i = 0; i < 8; ++i) {
+    const std::string pose = ' ' + std::to_string(i) + " 0 0 0 0 0 1\n";
+    const std::string at_origin = " 0 0 0 0 0 0 1\n";
+    seconds += "100." + std::to_string(i) + pose;
+    nanoseconds += std::to_string(i) + "00000000" + pose;
+    equal += "100." + std::to_string(i == 4 ? 3 : i) + pose;
+    rounded += "100." + std::to_string(i / 2) + pose;
+    standing += "100." + std::to_string(i == 4 ? 3 : i) + at_origin;
+    falling += "100." + std::to_string(7 - i) + pose;
+  }
+  const struct {
+    std::string content;
+    int exit_code;
+    std::vector<std::string> errors;
+  } cases[] = {
+      {seconds, 0, {}},
+      {nanoseconds, 0, {": warning: ", "a.tum: ", "nanoseconds: divide them by 1e9"}},
+      {equal, 1, {": warning: ", "1 of 8 stamps equal", "which one is meant cannot be told"}},
+      {rounded, 1, {": warning: ", "seem to be rounded", "which one is meant cannot be told"}},
+      {standing, 0, {": warning: ", "1 of 8 stamps equal"}},
+      {falling, 0, {": warning: ", "7 of 8 stamps lie before"}},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.content);
+    const std::string path = file("a.tum", c.content);
+    const AppResult result = run(path + path + "-skip 0 -json");
+    EXPECT_EQ(result.exit_code, c.exit_code);
+    EXPECT_EQ(result.errors.empty(), c.errors.empty()) << result.errors;
+    EXPECT_EQ(result.output.empty(), c.exit_code != 0);
+    if (c.exit_code == 0) {
+      EXPECT_EQ(nlohmann::json::parse(result.output).at("position_max_m"), 0.0);
+    }
+    for (const std::string& part : c.errors) EXPECT_NE(result.errors.find(part), std::string::npos) << result.errors;
+  }
+  // As many as one of two is enough.
+  const std::string all = file("all.tum", seconds);
+  const std::string few = file("few.tum", "100.1 1 0 0 0 0 0 1\n100.2 2 0 0 0 0 0 1\n100.6 6 0 0 0 0 0 1\n");
+  const AppResult sparse = run(few + all + "-skip 0");
+  EXPECT_EQ(sparse.exit_code, 0);
+  EXPECT_NE(sparse.errors.find("only 3 of 8 poses"), std::string::npos) << sparse.errors;
+  EXPECT_EQ(run(all + few + "-skip 0").errors, "");
+}
+
 TEST_F(EvaluateApp, PrintsText) {
   const AppResult result = run(tum_reference + tum_estimate);
   EXPECT_EQ(result.exit_code, 0) << result.errors;

@@ -286,6 +286,31 @@ TEST_F(LocalizeApp, AScanThatCannotBeReadIsRejectedAndTheOthersAreLocalized) {
     const std::string frames = contentOf(out / "frames.csv");
     EXPECT_NE(frames.find(",0,unreadable scan,"), std::string::npos) << frames;
     EXPECT_NE(frames.find(",000003.bin,coasting,"), std::string::npos) << frames;
+    std::filesystem::remove_all(out);
+    const AppResult strict = localize("-skip 0 -strict");
+    EXPECT_EQ(strict.exit_code, 1);
+    EXPECT_NE(strict.errors.find("1 scans could not be read"), std::string::npos) << strict.errors;
+    EXPECT_EQ(summary().at("accepted"), 5);
+  }
+  replace("velodyne/000003.bin", scan);
+  EXPECT_EQ(localize("-skip 0 -strict").exit_code, 0);
+}
+
+TEST_F(LocalizeApp, OddStampsAreSaid) {
+  buildMap("");
+  const std::pair<std::string, std::string> cases[] = {
+      {"0\n0\n0.1\n0.1\n0.2\n0.2\n", "3 of 6 stamps equal the one before"},
+      {"0\n1e8\n2e8\n3e8\n4e8\n5e8\n", "nanoseconds: divide them by 1e9"}};
+  for (const auto& [times, said] : cases) {
+    replace("times.txt", times);
+    const AppResult result = localize("-skip 0");
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(result.errors.find("saw_ndt_localize: warning: "), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("times.txt: "), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find(said), std::string::npos) << result.errors;
+    // Errors are of the poses of the same scan, whatever its stamp.
+    EXPECT_EQ(summary().at("evaluated_scans"), 6);
+    EXPECT_LT(summary().at("position_max_m"), 0.1);
   }
 }
 

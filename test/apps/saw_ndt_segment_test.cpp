@@ -3,6 +3,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "io/pcd_text.h"
 #include "real_data.h"
 #include "report/segmentation_score.h"
 #include "run_app_program.h"
@@ -96,6 +97,64 @@ TEST_F(SegmentApp, ReadsPcdAndTellsTheCounts) {
         << result.output;
     EXPECT_GT(counts[1], scan.size() / 2);
   }
+}
+
+TEST_F(SegmentApp, KeepsWhatTheScanTellsOfItsPoints) {
+  // Five floats a point, the fifth a ring that begins to count at the bottom, and the same as PCD with other fields.
+  const SensorModel sensor = SensorModel::named("HDL-64E");
+  const pcl::PointCloud<pcl::PointXYZ> scan = roadAndWall();
+  std::vector<double> x, y, z, rings, numbers;
+  std::string bytes;
+  for (const pcl::PointXYZ& point : scan) {
+    const double elevation_deg = degreesFromRadians(std::atan2(point.z, std::hypot(point.x, point.y)));
+    std::size_t ring = 0;
+    for (std::size_t i = 0; i < sensor.elevations_deg.size(); ++i) {
+      const auto off = [&](std::size_t k) { return std::abs(sensor.elevations_deg[k] - elevation_deg); };
+      if (off(i) < off(ring)) ring = i;
+    }
+    rings.push_back(static_cast<double>(sensor.elevations_deg.size() - 1 - ring));
+    numbers.push_back(static_cast<double>(numbers.size()));
+    x.push_back(point.x);
+    y.push_back(point.y);
+    z.push_back(point.z);
+    const float values[] = {point.x, point.y, point.z, 0.25F, static_cast<float>(rings.back())};
+    bytes.append(reinterpret_cast<const char*>(values), sizeof(values));
+  }
+  folder.write("five.bin", bytes);
+  folder.write("in.pcd", pcdText({{"x", 'F', 4, 1, x},
+                                  {"_", 'U', 1, 4, x},
+                                  {"y", 'F', 4, 1, y},
+                                  {"z", 'F', 4, 1, z},
+                                  {"label", 'U', 2, 1, rings},
+                                  {"ring", 'U', 2, 1, rings},
+                                  {"number", 'U', 4, 1, numbers}},
+                                 "binary"));
+  ASSERT_EQ(run(quoted("five.bin") + quoted("five.pcd")).exit_code, 0);
+  ASSERT_EQ(run(quoted("five.bin") + quoted("stated.pcd") + "-bin-fields 5").exit_code, 0);
+  ASSERT_EQ(run(quoted("in.pcd") + quoted("out.pcd")).exit_code, 0);
+  EXPECT_EQ(pointCloudFields(folder.path() / "five.pcd"),
+            (std::vector<std::string>{"x", "y", "z", "intensity", "ring", "label"}));
+  EXPECT_EQ(pointCloudFields(folder.path() / "out.pcd"),
+            (std::vector<std::string>{"x", "y", "z", "ring", "number", "label"}));
+
+  const ScanPoints kept = readScanPoints(folder.path() / "out.pcd");
+  ASSERT_EQ(kept.points.size(), scan.size());
+  EXPECT_EQ(kept.rings, std::vector<std::uint16_t>(rings.begin(), rings.end()));
+  // Rings are used: labels are those of the segmentation that knows them.
+  ScanPoints known;
+  for (const pcl::PointXYZ& point : scan) known.points.push_back({point.x, point.y, point.z, 0.25F});
+  known.rings.assign(rings.begin(), rings.end());
+  std::vector<StructuralLabel> expected;
+  ScanSegmenter(SegmentationOptions()).segment(viewOf(known), expected);
+  for (const std::string name : {"five.pcd", "stated.pcd", "out.pcd"}) {
+    const auto labelled = readPointCloud<pcl::PointXYZL>(folder.path() / name);
+    ASSERT_EQ(labelled.size(), scan.size()) << name;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      ASSERT_EQ(labelled[i].getVector3fMap(), scan[i].getVector3fMap());
+      ASSERT_EQ(labelled[i].label, static_cast<std::uint32_t>(expected[i])) << name << ' ' << i;
+    }
+  }
+  EXPECT_EQ(run(quoted("five.bin") + quoted("x.pcd") + "-bin-fields 7").exit_code, 2);
 }
 
 TEST_F(SegmentApp, SaysWhatIsWrongAndWritesNothing) {

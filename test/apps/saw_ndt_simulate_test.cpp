@@ -1,4 +1,5 @@
 #include "drive_files.h"
+#include "saw_ndt/common/geometry.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/trajectory.h"
 
@@ -79,6 +80,34 @@ TEST_F(SimulateApp, WrongUsageIsNamedAndLeavesNothing) {
   expectFails(1, {"none.txt"}, "-trajectory none.txt");
   const auto scene = folder.write("bad.json", R"({"name": "bad", "speed": 3})");
   expectFails(1, {"bad.json", "speed", "unknown"}, "-scene " + quoted(scene));
+}
+
+TEST_F(SimulateApp, TakesBeamsFromAFileAndTheMountingOfTheLidar) {
+  const auto sensor = folder.write("mine.json", R"({"name": "mine", "columns": 360, "elevations_deg": [2, -9, -20]})");
+  const std::string options = "-objects 0.3 -scans 1 -sensor " + quoted(sensor);
+  const auto run = [&](const std::string& name, const std::string& more) {
+    return runAppProgram(SAW_NDT_APP, quoted(folder.path() / name) + options + more);
+  };
+  ASSERT_EQ(run("upright", "").exit_code, 0);
+  ASSERT_EQ(run("hanging", "-mount-roll 180 -mount-pitch 10").exit_code, 0);
+  const KittiSequence upright(folder.path() / "upright"), hanging(folder.path() / "hanging");
+  EXPECT_LE(upright.readScan(0).size(), 3U * 360U);
+  const Eigen::Matrix3d R = upright.posesLidar()[0].linear().transpose() * hanging.posesLidar()[0].linear();
+  EXPECT_NEAR(R(2, 0), -std::sin(radiansFromDegrees(10.0)), 1e-6);
+  EXPECT_NEAR(R(1, 1), -1.0, 1e-6);
+  EXPECT_LT((upright.posesLidar()[0].translation() - hanging.posesLidar()[0].translation()).norm(), 1e-6);
+}
+
+TEST_F(SimulateApp, RefusesSensorsThatItCannotSimulate) {
+  const auto refused = [&](const std::string& sensor) {
+    return runAppProgram(SAW_NDT_APP, quoted(folder.path() / "failed") + "-scans 1 -sensor " + sensor);
+  };
+  EXPECT_NE(refused("M1").errors.find("sensor = M1"), std::string::npos) << refused("M1").errors;
+  EXPECT_EQ(refused("M1").exit_code, 2);
+  EXPECT_NE(refused("HDL-65").errors.find("VLS-128"), std::string::npos) << refused("HDL-65").errors;
+  EXPECT_EQ(refused("HDL-65").exit_code, 2);
+  EXPECT_NE(refused("none.json").errors.find("none.json"), std::string::npos) << refused("none.json").errors;
+  EXPECT_EQ(refused("none.json").exit_code, 1);
 }
 
 TEST_F(SimulateApp, DoesNotMixWithASequenceThatIsThere) {

@@ -108,7 +108,27 @@ TEST(SequenceMapErrors, TheFirstBadScanIsNamed) {
     expectThrows<Error>([&] { buildDriveMap(*sequence.scans({0, 1, 2, 3, 4}), options); }, {"000001.bin"});
     expectThrows<Error>([&] { buildDriveMap(*sequence.scans({4, 3, 2, 1, 0}), options); }, {"000003.bin"});
     EXPECT_EQ(buildDriveMap(*sequence.scans({0, 2, 4}), options).build().origin().point_count, 12U);
+
+    std::vector<std::string> left_out;
+    std::atomic<int> done{0};
+    options.scan_left_out = [&](const std::string& failure) { left_out.push_back(failure); };
+    const WeightedVoxelMap map = buildDriveMap(*sequence.scans({0, 1, 2, 3, 4}), options, [&] { ++done; }).build();
+    EXPECT_EQ(map.origin().scan_count, 3U);
+    EXPECT_EQ(done, 3);
+    ASSERT_EQ(left_out.size(), 2U);
+    EXPECT_NE(left_out[0].find("000001.bin"), std::string::npos) << left_out[0];
+    EXPECT_NE(left_out[1].find("000003.bin"), std::string::npos) << left_out[1];
+    expectThrows<Error>([&] { buildDriveMap(*sequence.scans({1, 3}), options); }, {"000003.bin", "no other scan"});
   }
+}
+
+TEST(SequenceMapErrors, AScanWithoutAReferencePoseIsOneWhateverIsLeftOut) {
+  const TemporaryFolder folder;
+  folder.write("velodyne/000000.bin", "1234567890123456");
+  DriveMapOptions options;
+  options.scan_left_out = [](const std::string& failure) { ADD_FAILURE() << failure; };
+  expectThrows<Error>([&] { buildDriveMap(*KittiSequence(folder.path()).scans({0}), options); },
+                      {"000000.bin", "no reference pose"});
 }
 
 }  // namespace

@@ -50,6 +50,17 @@ TEST(Metrics, MatchesTheNearestStampWithinTheTolerance) {
   EXPECT_EQ(pairs[1].T_map_estimate.translation().y(), 2.0);
 }
 
+// Compared with itself, a trajectory with equal stamps would be metres off.
+TEST(Metrics, PosesOfTheSameStampAreNotCompared) {
+  std::vector<StampedPose> equal{poseAt(0.0, 0, 0, 0), poseAt(0.1, 1, 0, 0), poseAt(0.1, 2.5, 0, 0)};
+  const std::vector<StampedPose> good{poseAt(0.0, 0, 0, 0), poseAt(0.1, 1, 0, 0)};
+  expectThrows<std::invalid_argument>([&] { matchTrajectories(equal, good, 0.0); },
+                                      {"reference trajectory", "1.5 m apart", "same stamp 0.1 s"});
+  expectThrows<std::invalid_argument>([&] { matchTrajectories(good, equal, 0.0); }, {"estimated trajectory"});
+  equal[2] = equal[1];
+  EXPECT_EQ(evaluateTrajectory(equal, equal, 0.0).position_max_m, 0.0);
+}
+
 TEST(Metrics, SkipsFromTheFirstEstimatedStamp) {
   const std::vector<StampedPose> estimate{poseAt(0.1, 1, 9, 0), poseAt(0.2, 2, 1, 179)};
   EXPECT_EQ(evaluateTrajectory(kReference, estimate, 0.0).evaluated_scans, 2U);

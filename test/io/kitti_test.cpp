@@ -130,6 +130,23 @@ TEST_F(KittiSequenceTest, PosesBesideTheScansComeFirstAndANamedFileBeforeThem) {
   expectThrows<Error>([&] { KittiSequence(folder, "none.txt"); }, {"none.txt", "No such file"});
 }
 
+// Data are often linked to where they are used.
+TEST_F(KittiSequenceTest, BehindASymbolicLinkThePosesAreFound) {
+  namespace fs = std::filesystem;
+  // Poses beside the link, or beside what it leads to; another name; a link above.
+  fs::create_directories(data.path() / "linked/sequences");
+  fs::create_directory_symlink(folder, data.path() / "linked/sequences/run");
+  const auto poses_of = [](const fs::path& path) { return fs::weakly_canonical(KittiSequence(path).posesFile()); };
+  EXPECT_EQ(poses_of(data.path() / "linked/sequences/run"), fs::weakly_canonical(data.path() / "poses/07.txt"));
+  EXPECT_EQ(poses_of(data.path() / "linked/sequences/run/"), fs::weakly_canonical(data.path() / "poses/07.txt"));
+  data.write("linked/poses/run.txt", kPoses);
+  EXPECT_EQ(poses_of(data.path() / "linked/sequences/run"), fs::weakly_canonical(data.path() / "linked/poses/run.txt"));
+  EXPECT_EQ(KittiSequence(data.path() / "linked/sequences/run").name(), "run");
+  fs::create_directory_symlink(data.path() / "sequences", data.path() / "linked/others");
+  EXPECT_EQ(poses_of(data.path() / "linked/others/07"), fs::weakly_canonical(data.path() / "poses/07.txt"));
+  EXPECT_EQ(KittiSequence(data.path() / "linked/others/07").posesLidar().size(), 2U);
+}
+
 TEST_F(KittiSequenceTest, NeedsOnlyWhatIsAskedFor) {
   std::filesystem::remove(folder / "calib.txt");
   std::filesystem::remove(folder / "times.txt");

@@ -36,6 +36,7 @@ void expectRowsAndColumns(const RangeImage& image, const SensorModel& sensor, co
 TEST(RangeImage, RecoversRingsFromFileOrderForEverySensor) {
   for (const std::string& name : SensorModel::names()) {
     const SensorModel sensor = SensorModel::named(name);
+    if (sensor.rows() == 0) continue;
     const auto cloud = ringOrderedScan(sensor, patchyRange);
     RangeImage image;
     image.project(viewOf(cloud), sensor);
@@ -196,7 +197,9 @@ TEST(RangeImage, LevelsHeightsByTheMountingPitch) {
   cloud.push_back(
       pcl::PointXYZ(static_cast<float>(10.0 * std::cos(pitch)), 0.01F, static_cast<float>(10.0 * std::sin(pitch))));
   RangeImage image;
-  image.project(viewOf(cloud), sensor, pitch);
+  SegmentationOptions options;
+  options.mounting_pitch_deg = 5.0;
+  image.project(viewOf(cloud), sensor, ScanProjection(options));
   const std::int32_t pixel = image.pixelOfPoint()[0];
   ASSERT_NE(pixel, RangeImage::kNoPixel);
   EXPECT_NEAR(image.height()[pixel], 0.0, 1e-4);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "expect_throws.h"
 #include "saw_ndt/pcl/cloud_view.h"
@@ -207,6 +208,58 @@ TEST(LidarSimulator, TheVehicleItselfHidesTheView) {
   EXPECT_EQ(countOf(seen, 40), countOf(all, 40));
   EXPECT_LT(countOf(seen, 63), 0.7 * countOf(all, 63));
   EXPECT_GT(countOf(seen, 63), 0.4 * countOf(all, 63));
+}
+
+TEST(LidarSimulator, SeesItsFieldOfViewAlone) {
+  LidarOptions options = perfectLidar();
+  options.rain_share = 0.05;
+  LidarSimulator all_around(crossing(), options);
+  const LidarScan all = all_around.scan(straightDrive(1, 0.0), 0);
+  options.field_of_view_deg = 120.0;
+  LidarSimulator to_the_front(crossing(), options);
+  const LidarScan seen = to_the_front.scan(straightDrive(1, 0.0), 0);
+  double leftmost_rad = 0.0, rightmost_rad = 0.0;
+  for (const LidarPoint& point : seen.points) {
+    leftmost_rad = std::max(leftmost_rad, wrappedAngle(azimuthOf(point)));
+    rightmost_rad = std::min(rightmost_rad, wrappedAngle(azimuthOf(point)));
+  }
+  const double step_rad = 2.0 * kPi / options.firings_per_turn;
+  EXPECT_NEAR(leftmost_rad, kPi / 3.0, step_rad);
+  EXPECT_NEAR(rightmost_rad, -kPi / 3.0, step_rad);
+  EXPECT_NEAR(static_cast<double>(seen.points.size()), static_cast<double>(all.points.size()) / 3.0,
+              0.1 * static_cast<double>(all.points.size()));
+}
+
+TEST(LidarSimulator, ATiltedLidarSeesTheSameSceneFromItsPose) {
+  for (const auto& [roll_deg, pitch_deg] : {std::pair<double, double>{180.0, 0.0}, {-25.0, 15.0}}) {
+    LidarOptions options = perfectLidar();
+    options.mounting_roll_deg = roll_deg;
+    options.mounting_pitch_deg = pitch_deg;
+    LidarSimulator simulator(sceneOf({ground()}), options);
+    const VehicleMotion motion = straightDrive(1, 0.0).withMounting(options.R_vehicle_lidar());
+    const LidarScan scan = simulator.scan(motion, 0);
+    EXPECT_GT(scan.points.size(), 3000U);
+    for (const LidarPoint& point : scan.points) {
+      EXPECT_NEAR((motion.T_scene_lidar[0] * positionOf(point).cast<double>()).z(), 0.0, 1e-3);
+    }
+  }
+}
+
+TEST(LidarSimulator, TheVehicleHidesTheSameGroundFromATiltedLidar) {
+  // The beams lie alike above and below the horizon, so that upside down it sees what it saw upright.
+  LidarOptions options = perfectLidar();
+  options.sensor = SensorModel::evenlySpaced("even", 32, 1800, 30.0, -30.0);
+  options.own_vehicle = LidarOptions().own_vehicle;
+  const auto pointCount = [&](double roll_deg) {
+    options.mounting_roll_deg = roll_deg;
+    LidarSimulator simulator(sceneOf({ground()}), options);
+    const VehicleMotion motion = straightDrive(1, 0.0).withMounting(options.R_vehicle_lidar());
+    return static_cast<double>(simulator.scan(motion, 0).points.size());
+  };
+  const double upright = pointCount(0.0);
+  EXPECT_NEAR(pointCount(180.0), upright, 0.01 * upright);
+  options.own_vehicle.setEmpty();
+  EXPECT_GT(pointCount(180.0), upright + 2000.0);
 }
 
 TEST(LidarSimulator, AnEmptySceneGivesAnEmptyScan) {

@@ -23,9 +23,13 @@ namespace saw_ndt {
 class SAW_NDT_EXPORT KittiSequence {
  public:
   /// @param folder      the sequence
-  /// @param poses_file  its poses; empty: `folder/poses.txt`, then `folder/../../poses/<name>.txt`
-  /// Throws Error where the folder has no numbered scan, or where `poses_file` is named and missing.
-  explicit KittiSequence(const std::filesystem::path& folder, const std::filesystem::path& poses_file = {});
+  /// @param poses_file  its poses; empty: `folder/poses.txt`, then `folder/../../poses/<name>.txt`, of the path as
+  ///                    given or, behind symbolic links, as it is
+  /// @param bin_fields  floats a point of its scans: 4, 5 or 6; 0: told from the first scan whose values say
+  /// Throws Error where the folder has no numbered scan, or where `poses_file` is named and missing, and
+  /// std::invalid_argument for other bin_fields.
+  explicit KittiSequence(const std::filesystem::path& folder, const std::filesystem::path& poses_file = {},
+                         int bin_fields = 0);
 
   /// The folder's own name, such as "00".
   const std::string& name() const { return name_; }
@@ -37,8 +41,10 @@ class SAW_NDT_EXPORT KittiSequence {
   /// The SemanticKITTI file of a scan, whether it exists or not.
   std::filesystem::path labelPath(int scan) const;
 
-  /// Reads a scan; see readKittiScan().
+  /// Reads the points of a scan; see readScanPoints().
   std::vector<LidarPoint> readScan(int scan) const;
+  /// Reads a scan with the rings and times of its points, into memory that `points` may bring along.
+  void readScan(int scan, ScanPoints& points) const;
   /// Reads the class of each point of a scan; an Error where their number differs from the scan's points.
   std::vector<std::uint16_t> readLabels(int scan) const;
 
@@ -68,6 +74,7 @@ class SAW_NDT_EXPORT KittiSequence {
   };
 
   const Scan& scanAt(int scan) const;
+  int binFields() const;
   std::vector<std::size_t> linesOfScans(const std::filesystem::path& path, const std::string& what,
                                         std::size_t line_count) const;
 
@@ -75,6 +82,7 @@ class SAW_NDT_EXPORT KittiSequence {
   std::filesystem::path poses_file_;
   std::string name_;
   std::vector<Scan> scans_;
+  mutable int bin_fields_;                              // 0: not told yet
   mutable std::vector<double> stamps_s_;                // empty: not read yet
   mutable std::vector<Eigen::Isometry3d> T_map_lidar_;  // empty: not read yet
 };

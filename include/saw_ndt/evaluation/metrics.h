@@ -22,7 +22,8 @@ struct PosePair {
 ///
 /// Poses without a reference within kStampTolerance_s are left out, and so are those of the first `skip_s` seconds,
 /// counted from the estimate's first stamp (a pose at exactly skip_s counts). Throws std::invalid_argument, saying why,
-/// where no pair is left, where skip_s is negative, and where a pose or stamp is not finite.
+/// where no pair is left, where skip_s is negative, where a pose or stamp is not finite, and where poses of one
+/// trajectory have the same stamp and are more than a centimetre apart.
 SAW_NDT_EXPORT std::vector<PosePair> matchTrajectories(const std::vector<StampedPose>& reference,
                                                        const std::vector<StampedPose>& estimate, double skip_s);
 

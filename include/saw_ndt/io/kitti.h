@@ -11,8 +11,9 @@
 namespace saw_ndt {
 
 /// Reads a Velodyne scan: little-endian float32 x y z reflectance a point, metres, LiDAR frame; the intensity is the
-/// reflectance. Points that are not finite are kept. Throws Error where the file is missing, empty, or ends within a
-/// point (naming the offset).
+/// reflectance. Points that are not finite are kept. Throws Error where the file is missing, empty, ends within a point
+/// (naming the offset), seems to have another number of floats a point, or has coordinates that no scan has.
+/// readScanPoints() reads five and six floats a point.
 SAW_NDT_EXPORT std::vector<LidarPoint> readKittiScan(const std::filesystem::path& path);
 /// The same into memory that `points` may bring along.
 SAW_NDT_EXPORT void readKittiScan(const std::filesystem::path& path, std::vector<LidarPoint>& points);
@@ -31,8 +32,9 @@ SAW_NDT_EXPORT void writeSemanticKittiLabels(const std::filesystem::path& path,
 /// Writes a KITTI calib.txt: `Tr`, and `P0` to `P3` of four cameras side by side such as KITTI's. Throws Error.
 SAW_NDT_EXPORT void writeKittiCalibration(const std::filesystem::path& path, const Eigen::Isometry3d& T_camera_lidar);
 
-/// Reads the transform from the LiDAR to the left camera: the line `Tr` (or `Tr_velo_to_cam`, `Tr_velo_cam`) of a KITTI
-/// calib.txt. Throws Error where it is missing or no rigid transform.
+/// Reads the transform from the LiDAR to the left camera: the line `Tr` of a KITTI calib.txt, or else R0 Tr with the
+/// line `Tr_velo_to_cam` (or `Tr_velo_cam`) and the rotation `R0_rect` (or `R_rect`), where there is one. Colons and
+/// blanks before them may be there or not. Throws Error, naming the line, where it is missing or no rigid transform.
 SAW_NDT_EXPORT Eigen::Isometry3d readKittiCalibration(const std::filesystem::path& path);
 
 }  // namespace saw_ndt

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/common/sensor_model.h"
@@ -75,8 +77,18 @@ struct SAW_NDT_EXPORT ComponentOptions {
 struct SAW_NDT_EXPORT SegmentationOptions {
   /// Beams and image width of the sensor.
   SensorModel sensor = SensorModel::named("HDL-64E");
-  /// Angle in degrees by which the sensor's x axis points below the horizon, -90 to 90.
+  /// How the sensor is turned out of the horizontal: by the roll about its x axis, then by the pitch, by which that
+  /// axis points below the horizon. The heading does not matter: level = Ry(pitch) Rx(roll). Degrees, pitch -90 to 90,
+  /// roll -180 to 180; a roll of 180 is a sensor upside down.
   double mounting_pitch_deg = 0.0;
+  double mounting_roll_deg = 0.0;
+  /// Nearer points are no returns, as those of the vehicle itself (m).
+  double min_range_m = 0.0;
+  /// Nor are farther ones (m).
+  double max_range_m = std::numeric_limits<double>::infinity();
+  /// Nor are those in the box of the vehicle itself: least x, y, z, greatest x, y, z in the LiDAR frame (m); empty:
+  /// there is none.
+  std::vector<double> vehicle_box_m;
   /// How ground is told.
   GroundOptions ground;
   /// What is noise.

@@ -1,0 +1,62 @@
+#include <gtest/gtest.h>
+
+#include "expect_throws.h"
+#include "saw_ndt/common/error.h"
+#include "saw_ndt/common/geometry.h"
+#include "saw_ndt/io/kitti.h"
+#include "temporary_folder.h"
+
+namespace saw_ndt {
+namespace {
+
+class KittiCalibrationForms : public ::testing::Test {
+ protected:
+  Eigen::Isometry3d read(const std::string& text) const {
+    return readKittiCalibration(folder.write("calib.txt", text));
+  }
+
+  TemporaryFolder folder;
+};
+
+const Eigen::Vector3d kPlace(0.1, 0.2, 0.3);
+
+TEST_F(KittiCalibrationForms, KeysMayHaveAColonOrNot) {
+  for (const std::string key : {"Tr:", "Tr :", "Tr", "Tr\t:\t", "  Tr:", "Tr_velo_to_cam:", "Tr_velo_cam",
+                                "Tr_velo_to_cam :", "\xEF\xBB\xBFTr:"}) {
+    for (const std::string end : {"\n", "\r\n", ""}) {
+      const Eigen::Isometry3d T = read(key + " 0 -1 0 0.1 0 0 -1\t0.2 1 0 0 0.3" + end);
+      EXPECT_EQ(T.translation(), kPlace) << key;
+      EXPECT_LT((T.linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitZ()).norm(), 1e-12) << key;
+    }
+  }
+}
+
+// As in KITTI's files of objects and of tracking: P = P2 R0 Tr.
+TEST_F(KittiCalibrationForms, ARectificationIsMultipliedIn) {
+  const std::string Tr = "Tr_velo_to_cam: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n";
+  // A quarter turn about the camera's z axis.
+  const std::string R = " 0 -1 0 1 0 0 0 0 1\n";
+  for (const std::string& text : {"R0_rect:" + R + Tr, Tr + "R_rect" + R, "R_rect :" + R + Tr}) {
+    const Eigen::Isometry3d T = read(text);
+    EXPECT_LT((T.translation() - Eigen::Vector3d(-0.2, 0.1, 0.3)).norm(), 1e-12) << text;
+    EXPECT_LT((T.linear() * Eigen::Vector3d::UnitY() - Eigen::Vector3d(0, -1, 0)).norm(), 1e-12) << text;
+  }
+  // The line Tr of the odometry benchmark is of the rectified camera.
+  EXPECT_EQ(read("R0_rect:" + R + Tr + "Tr: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n").translation(), kPlace);
+}
+
+TEST_F(KittiCalibrationForms, WhatIsWrongIsNamedWithItsLine) {
+  const std::string Tr = "Tr_velo_to_cam: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n";
+  const std::pair<std::string, const char*> cases[] = {
+      {"P0: 1\nTr 1 2 3\n", "calib.txt: line 2: 3 numbers, where 12"},
+      {Tr + "R0_rect: 1 0 0\n", "calib.txt: line 2: 3 numbers, where 9"},
+      {Tr + "R0_rect: 1 0 0 0 2 0 0 0 1\n", "calib.txt: line 2: is no rigid transform"},
+      {"Tr :: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n", "calib.txt: line 1: ':' is no finite number"},
+      {"Track: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n", "calib.txt: no line Tr"}};
+  for (const auto& [text, reason] : cases) {
+    expectThrows<Error>([&, content = text] { read(content); }, {reason});
+  }
+}
+
+}  // namespace
+}  // namespace saw_ndt
