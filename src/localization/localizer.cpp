@@ -11,6 +11,7 @@
 #include "common/stopwatch.h"
 #include "localization/motion_compensation.h"
 #include "localization/motion_knowledge.h"
+#include "localization/motion_refinement.h"
 #include "localization/pose_finder.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
@@ -45,11 +46,6 @@ LocalizerOptions withMethod(LocalizerOptions options) {
   options.alignment.evaluate_likelihoods = true;
   options.alignment.min_overlap = options.acceptance.min_overlap;
   return options;
-}
-
-BodyMotion mixed(const BodyMotion& a, const BodyMotion& b, double share_of_b) {
-  return {a.velocity_mps + share_of_b * (b.velocity_mps - a.velocity_mps),
-          a.turn_rate_radps + share_of_b * (b.turn_rate_radps - a.turn_rate_radps)};
 }
 
 void requireSegmentedAlike(const MapOrigin& origin, const LocalizerOptions& options) {
@@ -100,14 +96,14 @@ Localizer::Localizer(const NdtTarget& target, const LocalizerOptions& options)
       preparation_(preparationOptions(options_)),
       prediction_(options.prediction),
       finder_(std::make_unique<PoseFinder>(alignerTo(target, options_), target, options_)),
-      moving_(makeMoving(options_)) {}
+      moving_(makeMoving(options_, &target)) {}
 
 Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
     : options_(withMethod(options)),
       preparation_(preparationOptions(options_)),
       prediction_(options.prediction),
       finder_(std::make_unique<PoseFinder>(std::move(aligner), options_)),
-      moving_(makeMoving(options_)) {}
+      moving_(makeMoving(options_, nullptr)) {}
 
 // A scan on its way through localize().
 struct Localizer::ScanInWork {
@@ -120,14 +116,19 @@ struct Localizer::ScanInWork {
 
 // What is needed where the motion of the LiDAR skews scans.
 struct Localizer::Moving {
-  explicit Moving(const LocalizerOptions& options) : motion(options.prediction, options.scan_period_s) {}
+  Moving(const LocalizerOptions& options, const NdtTarget* target)
+      : motion(options.prediction, options.scan_period_s) {
+    if (target != nullptr) refinement.emplace(*target, options.alignment);
+  }
 
   MotionKnowledge motion;
   MovingSource source;
+  std::optional<MotionRefinement> refinement;  // not with an aligner of another kind
 };
 
-std::unique_ptr<Localizer::Moving> Localizer::makeMoving(const LocalizerOptions& options) {
-  return options.motion_compensation != MotionCompensation::OFF ? std::make_unique<Moving>(options) : nullptr;
+std::unique_ptr<Localizer::Moving> Localizer::makeMoving(const LocalizerOptions& options, const NdtTarget* target) {
+  if (options.motion_compensation == MotionCompensation::OFF) return nullptr;
+  return std::make_unique<Moving>(options, target);
 }
 
 // A search in a thread of its own.
@@ -255,77 +256,27 @@ PoseAttempt Localizer::locate(const SourcePoints& source, ScanInWork& scan) {
   return found;
 }
 
-// The found pose as it is by another motion, found again from a start.
-PoseAttempt Localizer::compensatedAgain(const PoseAttempt& found, const Eigen::Isometry3d& T_map_base_start,
-                                        const ScanMotion& motion, const ScanInWork& scan) {
-  const bool is_expected = found.search != SearchExtent::EVERYWHERE;
-  const PoseExpectation expected = expectation(scan.predicted, scan.stamp_s);
-  PoseAttempt again = finder_->findFrom(moving_->source.compensatedBy(motion), T_map_base_start,
-                                        is_expected ? &expected : nullptr, prediction_.state());
-  again.search = found.search;
-  return again;
-}
-
-// The motion by which most of the scan fits the map: the speed straight on is tried out, then corrected together with
-// what shakes the vehicle.
-PoseAttempt Localizer::withBestMotion(const PoseAttempt& found, const ScanInWork& scan, ScanMotion& motion) {
+// A vehicle of which no speed is known yet may have any straight on: the one at which the scan fits the map best.
+std::optional<RefinedMotion> Localizer::refinedAtAnySpeed(const SourcePoints& measured, const PoseAttempt& found,
+                                                          const MotionPrior& prior) {
   constexpr double kFastest_mps = 40.0;
   constexpr double kStep_mps = 8.0;
-  const Vector6d kSteps = (Vector6d() << 3.0, 0.0, 0.3, 0.0, 0.06, 0.06).finished();  // m/s, rad/s
-  constexpr int kRounds = 2;
-  constexpr double kFinerStep = 0.35;
-  struct Trial {
-    Vector6d rates = Vector6d::Zero();  // velocity, turn rate
-    double fit = -1.0;
-    Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
-  };
-  const auto evenMotion = [](const Vector6d& rates) { return ScanMotion::even({rates.head<3>(), rates.tail<3>()}); };
-  const auto tried = [&](const Vector6d& rates, const Eigen::Isometry3d& start) {
-    const AlignmentResult alignment = finder_->align(moving_->source.compensatedBy(evenMotion(rates)), start);
-    const double fit = alignment.converged() ? alignment.likelihoods.unweighted * alignment.overlap : -1.0;
-    return Trial{rates, fit, alignment.T_map_source};
-  };
-  // Where the scan was found as it is may be off by half the way of the turn.
-  Trial best;
-  best.T_map_base = found.alignment.T_map_source;
-  Eigen::Isometry3d start = best.T_map_base;
+  std::optional<RefinedMotion> best;
+  Eigen::Isometry3d start = found.alignment.T_map_source;
   for (double speed_mps = 0.0; speed_mps <= kFastest_mps; speed_mps += kStep_mps) {
-    Trial trial = tried(speed_mps * Vector6d::UnitX(), start);
-    if (found.search == SearchExtent::NONE) {
-      const Trial other = tried(speed_mps * Vector6d::UnitX(), scan.predicted.T_map_base);
-      if (other.fit > trial.fit) trial = other;
-    }
-    if (trial.fit > best.fit) best = trial;
-    if (trial.fit >= 0.0) start = trial.T_map_base;
+    const ScanMotion motion = ScanMotion::even({speed_mps * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()});
+    const AlignmentResult alignment = finder_->align(moving_->source.compensatedBy(motion), start);
+    if (!alignment.converged()) continue;
+    start = alignment.T_map_source;
+    const auto refined = moving_->refinement->refine(measured, preparation_.times_s(), start, motion, prior);
+    if (refined && (!best || refined->score > best->score)) best = refined;
   }
-  if (best.fit < 0.0) return found;
-  for (int round = 0; round < kRounds; ++round) {
-    for (int k = 0; k < 6; ++k) {
-      const double step = std::pow(kFinerStep, round) * kSteps[k];
-      if (step == 0.0) continue;
-      const Trial less = tried(best.rates - step * Vector6d::Unit(k), best.T_map_base);
-      const Trial more = tried(best.rates + step * Vector6d::Unit(k), best.T_map_base);
-      // The summit of the parabola.
-      const double bend = less.fit + more.fit - 2.0 * best.fit;
-      const double way = bend < 0.0 ? std::clamp(0.5 * (less.fit - more.fit) / bend, -1.0, 1.0) : 0.0;
-      const Trial summit = tried(best.rates + way * step * Vector6d::Unit(k), best.T_map_base);
-      for (const Trial& trial : {less, more, summit}) {
-        if (trial.fit > best.fit) best = trial;
-      }
-      if (getenv("DBG"))
-        fprintf(stderr, "best %d %d fit %g rates %g %g %g %g %g %g\n", round, k, best.fit, best.rates[0], best.rates[1],
-                best.rates[2], best.rates[3], best.rates[4], best.rates[5]);
-    }
-  }
-  motion = evenMotion(best.rates);
-  const PoseAttempt again = compensatedAgain(found, best.T_map_base, motion, scan);
-  return again.accepted() || !found.accepted() ? again : found;
+  return best;
 }
 
-// By the motion that is expected and, where that turns out to be another, by what was found.
+// By the motion that is expected and then, where that turns out to be another, by that with which the scan fits best.
 PoseAttempt Localizer::locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan) {
-  constexpr double kSettledShift_m = 0.01;
-  constexpr int kMostRepetitions = 2;
+  constexpr double kNegligibleShift_m = 0.01;
   MovingSource& source = moving_->source;
   source.take(measured, preparation_.times_s());
   if (!source.hasTimes()) return locate(measured, scan);
@@ -333,26 +284,31 @@ PoseAttempt Localizer::locateMoving(const SourcePoints& measured, const ScanPrio
   const std::optional<ScanMotion> expected = moving_->motion.expected(track, priors);
   ScanMotion motion = expected.value_or(ScanMotion());
   PoseAttempt found = locate(source.compensatedBy(motion), scan);
-  const bool is_unknown = !expected || (found.search == SearchExtent::EVERYWHERE && !priors.motion);
-  if (is_unknown && found.alignment.converged()) found = withBestMotion(found, scan, motion);
-  for (int k = 0; k < kMostRepetitions && found.accepted() && found.search != SearchExtent::EVERYWHERE; ++k) {
-    const std::optional<ScanMotion> moved = moving_->motion.motionTo(found.T_map_base, track);
-    if (!moved || priors.motion) break;
-    // Points moved too far on the whole have set the pose back, of which the motion then tells too little.
-    const double share = 1.0 / (1.0 + source.meanTime_s() / *moving_->motion.elapsed_s(track));
-    const ScanMotion better{mixed(motion.before, moved->before, share), mixed(motion.after, moved->after, share)};
-    if (getenv("DBG"))
-      fprintf(stderr, "scan %.2f motion %.3f %.3f %.3f w %.4f %.4f %.4f moved %.3f %.3f %.3f w %.4f %.4f %.4f\n",
-              scan.stamp_s, motion.before.velocity_mps.x(), motion.before.velocity_mps.y(),
-              motion.before.velocity_mps.z(), motion.before.turn_rate_radps.x(), motion.before.turn_rate_radps.y(),
-              motion.before.turn_rate_radps.z(), moved->before.velocity_mps.x(), moved->before.velocity_mps.y(),
-              moved->before.velocity_mps.z(), moved->after.turn_rate_radps.x(), moved->after.turn_rate_radps.y(),
-              moved->after.turn_rate_radps.z());
-    if (shiftBetween(better, motion, source.reach_s()) < kSettledShift_m) break;
-    const PoseAttempt again = compensatedAgain(found, found.alignment.T_map_source, better, scan);
-    if (!again.accepted()) break;
-    motion = better;
-    found = again;
+  if (found.alignment.converged() && moving_->refinement) {
+    const bool is_elsewhere = found.search == SearchExtent::EVERYWHERE;
+    const MotionPrior prior = moving_->motion.prior(track, priors, is_elsewhere);
+    const bool is_unknown = !prior.before && (!expected || is_elsewhere);
+    const std::optional<RefinedMotion> refined =
+        is_unknown ? refinedAtAnySpeed(measured, found, prior)
+                   : moving_->refinement->refine(measured, preparation_.times_s(), found.alignment.T_map_source, motion,
+                                                 prior);
+    if (refined && refined->significant &&
+        shiftBetween(refined->motion, motion, source.reach_s()) >= kNegligibleShift_m) {
+      const PoseExpectation pose_expected = expectation(scan.predicted, scan.stamp_s);
+      PoseAttempt again = finder_->findFrom(source.compensatedBy(refined->motion), refined->T_map_base,
+                                            is_elsewhere ? nullptr : &pose_expected, track);
+      again.search = found.search;
+      if (getenv("DBG"))
+        fprintf(stderr, "scan %.2f score %.1f before %.3f %.3f %.3f w %.4f %.4f %.4f after %.3f %.3f %.3f w %.4f %.4f %.4f\n",
+                scan.stamp_s, refined->score, refined->motion.before.velocity_mps.x(), refined->motion.before.velocity_mps.y(),
+                refined->motion.before.velocity_mps.z(), refined->motion.before.turn_rate_radps.x(), refined->motion.before.turn_rate_radps.y(), refined->motion.before.turn_rate_radps.z(),
+                refined->motion.after.velocity_mps.x(), refined->motion.after.velocity_mps.y(),
+                refined->motion.after.velocity_mps.z(), refined->motion.after.turn_rate_radps.x(), refined->motion.after.turn_rate_radps.y(), refined->motion.after.turn_rate_radps.z());
+      if (again.accepted() || !found.accepted()) {
+        found = again;
+        motion = refined->motion;
+      }
+    }
   }
   if (found.accepted()) moving_->motion.learn(motion);
   return found;

@@ -27,6 +27,9 @@ struct ScanMotion {
   static ScanMotion even(const BodyMotion& motion) { return {motion, motion}; }
 };
 
+/// What of a motion of a vehicle goes on: that in the plane that it stands on. What is across it are shocks of the road.
+BodyMotion planarPart(const BodyMotion& motion);
+
 /// The even motion that leads from one pose to another.
 /// @param T_before_now  pose of the body in its frame before
 /// @param duration_s    that it took, other than 0

@@ -23,7 +23,8 @@ namespace saw_ndt {
 namespace internal {
 class PoseFinder;
 struct PoseAttempt;
-struct ScanMotion;
+struct MotionPrior;
+struct RefinedMotion;
 }  // namespace internal
 
 struct SAW_NDT_EXPORT LocalizerOptions {
@@ -158,13 +159,12 @@ class SAW_NDT_EXPORT Localizer {
   struct OngoingSearch;
   struct Moving;
 
-  static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options);
+  static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options, const NdtTarget* target);
   internal::PoseAttempt locate(const SourcePoints& source, ScanInWork& scan);
   internal::PoseAttempt locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan);
-  internal::PoseAttempt withBestMotion(const internal::PoseAttempt& found, const ScanInWork& scan,
-                                       internal::ScanMotion& motion);
-  internal::PoseAttempt compensatedAgain(const internal::PoseAttempt& found, const Eigen::Isometry3d& T_map_base_start,
-                                         const internal::ScanMotion& motion, const ScanInWork& scan);
+  std::optional<internal::RefinedMotion> refinedAtAnySpeed(const SourcePoints& measured,
+                                                           const internal::PoseAttempt& found,
+                                                           const internal::MotionPrior& prior);
 
   std::unique_ptr<internal::PoseFinder> finder_;
   std::unique_ptr<OngoingSearch> ongoing_search_;
