@@ -48,6 +48,12 @@ LocalizerOptions withMethod(LocalizerOptions options) {
   return options;
 }
 
+// How well poses explain scans that are compensated by different motions. The score alone would draw points to where
+// the map is coarse.
+double fitOf(const AlignmentResult& alignment) {
+  return alignment.converged() ? alignment.likelihoods.unweighted * alignment.overlap : -1.0;
+}
+
 void requireSegmentedAlike(const MapOrigin& origin, const LocalizerOptions& options) {
   if (!options.method.segment || options.allow_other_segmentation || !origin.segmentation) return;
   if (const auto difference = firstDifference(*origin.segmentation, options.segmentation)) {
@@ -116,8 +122,7 @@ struct Localizer::ScanInWork {
 
 // What is needed where the motion of the LiDAR skews scans.
 struct Localizer::Moving {
-  Moving(const LocalizerOptions& options, const NdtTarget* target)
-      : motion(options.prediction, options.scan_period_s) {
+  Moving(const LocalizerOptions& options, const NdtTarget* target) : motion(options.prediction, options.scan_period_s) {
     if (target != nullptr) refinement.emplace(*target, options.alignment);
   }
 
@@ -257,60 +262,62 @@ PoseAttempt Localizer::locate(const SourcePoints& source, ScanInWork& scan) {
 }
 
 // A vehicle of which no speed is known yet may have any straight on: the one at which the scan fits the map best.
-std::optional<RefinedMotion> Localizer::refinedAtAnySpeed(const SourcePoints& measured, const PoseAttempt& found,
-                                                          const MotionPrior& prior) {
+std::optional<RefinedMotion> Localizer::refinedAtAnySpeed(const PoseAttempt& found, const MotionPrior& prior) {
   constexpr double kFastest_mps = 40.0;
-  constexpr double kStep_mps = 8.0;
+  constexpr double kStep_mps = 10.0;
+  Moving& moving = *moving_;
   std::optional<RefinedMotion> best;
+  double best_fit = 0.0;
   Eigen::Isometry3d start = found.alignment.T_map_source;
   for (double speed_mps = 0.0; speed_mps <= kFastest_mps; speed_mps += kStep_mps) {
     const ScanMotion motion = ScanMotion::even({speed_mps * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()});
-    const AlignmentResult alignment = finder_->align(moving_->source.compensatedBy(motion), start);
+    const AlignmentResult alignment = finder_->align(moving.source.compensatedBy(motion), start);
     if (!alignment.converged()) continue;
     start = alignment.T_map_source;
-    const auto refined = moving_->refinement->refine(measured, preparation_.times_s(), start, motion, prior);
-    if (refined && (!best || refined->score > best->score)) best = refined;
+    const auto refined = moving.refinement->refine(moving.source, start, motion, prior);
+    if (!refined) continue;
+    const double fit = fitOf(finder_->align(moving.source.compensatedBy(refined->motion), refined->T_map_base));
+    if (fit <= best_fit) continue;
+    best_fit = fit;
+    best = refined;
   }
   return best;
 }
 
-// By the motion that is expected and then, where that turns out to be another, by that with which the scan fits best.
-PoseAttempt Localizer::locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan) {
+// A scan that was found by one motion, again by that with which it fits best.
+PoseAttempt Localizer::refined(const PoseAttempt& found, const ScanPriors& priors, const ScanInWork& scan,
+                               std::optional<ScanMotion>& motion) {
   constexpr double kNegligibleShift_m = 0.01;
-  MovingSource& source = moving_->source;
-  source.take(measured, preparation_.times_s());
-  if (!source.hasTimes()) return locate(measured, scan);
+  Moving& moving = *moving_;
   const TrackState& track = prediction_.state();
-  const std::optional<ScanMotion> expected = moving_->motion.expected(track, priors);
-  ScanMotion motion = expected.value_or(ScanMotion());
-  PoseAttempt found = locate(source.compensatedBy(motion), scan);
-  if (found.alignment.converged() && moving_->refinement) {
-    const bool is_elsewhere = found.search == SearchExtent::EVERYWHERE;
-    const MotionPrior prior = moving_->motion.prior(track, priors, is_elsewhere);
-    const bool is_unknown = !prior.before && (!expected || is_elsewhere);
-    const std::optional<RefinedMotion> refined =
-        is_unknown ? refinedAtAnySpeed(measured, found, prior)
-                   : moving_->refinement->refine(measured, preparation_.times_s(), found.alignment.T_map_source, motion,
-                                                 prior);
-    if (refined && refined->significant &&
-        shiftBetween(refined->motion, motion, source.reach_s()) >= kNegligibleShift_m) {
-      const PoseExpectation pose_expected = expectation(scan.predicted, scan.stamp_s);
-      PoseAttempt again = finder_->findFrom(source.compensatedBy(refined->motion), refined->T_map_base,
-                                            is_elsewhere ? nullptr : &pose_expected, track);
-      again.search = found.search;
-      if (getenv("DBG"))
-        fprintf(stderr, "scan %.2f score %.1f before %.3f %.3f %.3f w %.4f %.4f %.4f after %.3f %.3f %.3f w %.4f %.4f %.4f\n",
-                scan.stamp_s, refined->score, refined->motion.before.velocity_mps.x(), refined->motion.before.velocity_mps.y(),
-                refined->motion.before.velocity_mps.z(), refined->motion.before.turn_rate_radps.x(), refined->motion.before.turn_rate_radps.y(), refined->motion.before.turn_rate_radps.z(),
-                refined->motion.after.velocity_mps.x(), refined->motion.after.velocity_mps.y(),
-                refined->motion.after.velocity_mps.z(), refined->motion.after.turn_rate_radps.x(), refined->motion.after.turn_rate_radps.y(), refined->motion.after.turn_rate_radps.z());
-      if (again.accepted() || !found.accepted()) {
-        found = again;
-        motion = refined->motion;
-      }
-    }
-  }
-  if (found.accepted()) moving_->motion.learn(motion);
+  const bool is_elsewhere = found.search == SearchExtent::EVERYWHERE;
+  const MotionPrior prior = moving.motion.prior(track, priors, is_elsewhere);
+  const bool is_unknown = !prior.before && (!motion || is_elsewhere);
+  const ScanMotion known = motion.value_or(ScanMotion());
+  const std::optional<RefinedMotion> refined =
+      is_unknown ? refinedAtAnySpeed(found, prior)
+                 : moving.refinement->refine(moving.source, found.alignment.T_map_source, known, prior);
+  const bool is_other = refined && refined->significant &&
+                        shiftBetween(refined->motion, known, moving.source.reach_s()) >= kNegligibleShift_m;
+  if (!is_other) return found;
+  const PoseExpectation expected = expectation(scan.predicted, scan.stamp_s);
+  PoseAttempt again = finder_->findFrom(moving.source.compensatedBy(refined->motion), refined->T_map_base,
+                                        is_elsewhere ? nullptr : &expected, track);
+  if (fitOf(again.alignment) < fitOf(found.alignment) || (found.accepted() && !again.accepted())) return found;
+  again.search = found.search;
+  motion = refined->motion;
+  return again;
+}
+
+// By the motion that is expected, and then by the one that is found.
+PoseAttempt Localizer::locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan) {
+  Moving& moving = *moving_;
+  moving.source.take(measured, preparation_.times_s());
+  if (!moving.source.hasTimes()) return locate(measured, scan);
+  std::optional<ScanMotion> motion = moving.motion.expected(prediction_.state(), priors);
+  PoseAttempt found = locate(moving.source.compensatedBy(motion.value_or(ScanMotion())), scan);
+  if (found.alignment.converged() && moving.refinement) found = refined(found, priors, scan, motion);
+  if (found.accepted()) moving.motion.learn(motion.value_or(ScanMotion()));
   return found;
 }
 

@@ -215,15 +215,9 @@ double ScanPeriod::seconds() const {
 void MovingSource::take(const SourcePoints& source, const std::vector<float>& times_s) {
   source_ = &source;
   times_s_ = &times_s;
-  reach_s_ = mean_time_s_ = 0.0;
-  if (times_s.empty()) return;
   float reach_s = 0.0F;
-  for (const float time_s : times_s) {
-    reach_s = std::max(reach_s, std::abs(time_s));
-    mean_time_s_ += static_cast<double>(time_s);
-  }
+  for (const float time_s : times_s) reach_s = std::max(reach_s, std::abs(time_s));
   reach_s_ = static_cast<double>(reach_s);
-  mean_time_s_ /= static_cast<double>(times_s.size());
   moved_.label = source.label;
   moved_.labelled = source.labelled;
 }

@@ -27,7 +27,8 @@ struct ScanMotion {
   static ScanMotion even(const BodyMotion& motion) { return {motion, motion}; }
 };
 
-/// What of a motion of a vehicle goes on: that in the plane that it stands on. What is across it are shocks of the road.
+/// What of a motion of a vehicle goes on: that in the plane that it stands on. What is across it are shocks of the
+/// road.
 BodyMotion planarPart(const BodyMotion& motion);
 
 /// The even motion that leads from one pose to another.
@@ -104,9 +105,11 @@ class SAW_NDT_EXPORT MovingSource {
 
   /// Whether the points have times that differ.
   bool hasTimes() const { return reach_s_ > 0.0; }
-  /// How far from the stamp the points were measured at most, and on average (s).
+  /// How far from the stamp the points were measured at most (s).
   double reach_s() const { return reach_s_; }
-  double meanTime_s() const { return mean_time_s_; }
+  /// What take() was given.
+  const SourcePoints& measured() const { return *source_; }
+  const std::vector<float>& times_s() const { return *times_s_; }
 
   /// The source as seen at the stamp, valid until the next call: that of take() itself, bit for bit, where no point
   /// moves by a centimetre, as if the vehicle stood.
@@ -117,7 +120,6 @@ class SAW_NDT_EXPORT MovingSource {
   const std::vector<float>* times_s_ = nullptr;
   SourcePoints moved_;
   double reach_s_ = 0.0;
-  double mean_time_s_ = 0.0;
 };
 
 }  // namespace saw_ndt::internal

@@ -42,7 +42,9 @@ ScanMotion MotionPrior::motionTo(const Eigen::Isometry3d& T_map_base, const Vect
   return {until, motionOf(ratesOf(planarPart(until)) + change)};
 }
 
-void MotionRefinement::divide(const SourcePoints& source, const std::vector<float>& times_s) {
+void MotionRefinement::divide(const MovingSource& moving) {
+  const SourcePoints& source = moving.measured();
+  const std::vector<float>& times_s = moving.times_s();
   const auto [first, last] = std::minmax_element(times_s.begin(), times_s.end());
   // No part has times of both signs: the motion changes at the stamp.
   const auto partOf = [earliest = *first, latest = *last](float time_s) {
@@ -103,12 +105,9 @@ void MotionRefinement::evaluate(const MotionPrior& prior, State& state) {
   state.curvature.bottomRightCorner<6, 6>().diagonal() += weights;
 }
 
-std::optional<RefinedMotion> MotionRefinement::refine(const SourcePoints& source, const std::vector<float>& times_s,
-                                                      const Eigen::Isometry3d& T_map_base, const ScanMotion& motion,
-                                                      const MotionPrior& prior) {
-  divide(source, times_s);
-  double reach_s = 0.0;
-  for (const Part& part : parts_) reach_s = std::max(reach_s, std::abs(part.mean_time_s));
+std::optional<RefinedMotion> MotionRefinement::refine(const MovingSource& source, const Eigen::Isometry3d& T_map_base,
+                                                      const ScanMotion& motion, const MotionPrior& prior) {
+  divide(source);
   State best;
   best.T_map_base = T_map_base;
   best.change = ratesOf(motion.after) - ratesOf(prior.motionTo(T_map_base, Vector6d::Zero()).after);
@@ -130,7 +129,7 @@ std::optional<RefinedMotion> MotionRefinement::refine(const SourcePoints& source
     evaluate(prior, trial);
     const bool is_better = trial.score > best.score;
     const double shift_m = step.head<3>().norm() + kShiftArm_m * step.segment<3>(3).norm() +
-                           reach_s * (step.segment<3>(6).norm() + kShiftArm_m * step.tail<3>().norm());
+                           source.reach_s() * (step.segment<3>(6).norm() + kShiftArm_m * step.tail<3>().norm());
     if (is_better) {
       best = trial;
       step = stepFrom(best);
@@ -142,7 +141,6 @@ std::optional<RefinedMotion> MotionRefinement::refine(const SourcePoints& source
   RefinedMotion refined;
   refined.T_map_base = best.T_map_base;
   refined.motion = prior.motionTo(best.T_map_base, best.change);
-  refined.score = best.score / options_.covariance_scale;
   const Matrix12d covariance = options_.covariance_scale * best.curvature.inverse();
   const Vector6d rates = ratesOf(refined.motion.after);
   refined.significant = rates.dot(covariance.bottomRightCorner<6, 6>().ldlt().solve(rates)) > kUnlikely;

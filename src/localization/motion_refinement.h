@@ -33,7 +33,6 @@ struct MotionPrior {
 struct RefinedMotion {
   Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
   ScanMotion motion;
-  double score = 0.0;  ///< the greatest posterior, as far as it depends on pose and motion
   /// Whether the motion differs from standing by more than chance explains: a squared Mahalanobis distance over 22.5.
   bool significant = false;
 };
@@ -47,14 +46,12 @@ class SAW_NDT_EXPORT MotionRefinement {
   /// @param options  of the alignments; weights and levels are theirs
   MotionRefinement(NdtTarget target, const AlignmentOptions& options) : target_(std::move(target)), options_(options) {}
 
-  /// @param source       as it was measured, in the base's frame
-  /// @param times_s      from the stamp, one a point
+  /// @param source       with times
   /// @param T_map_base   to start from
   /// @param motion       likewise; taken as MotionPrior can tell it
   /// @return nothing where the scan meets no voxel
-  std::optional<RefinedMotion> refine(const SourcePoints& source, const std::vector<float>& times_s,
-                                      const Eigen::Isometry3d& T_map_base, const ScanMotion& motion,
-                                      const MotionPrior& prior);
+  std::optional<RefinedMotion> refine(const MovingSource& source, const Eigen::Isometry3d& T_map_base,
+                                      const ScanMotion& motion, const MotionPrior& prior);
 
  private:
   static constexpr std::size_t kParts = 12;
@@ -77,7 +74,7 @@ class SAW_NDT_EXPORT MotionRefinement {
     std::size_t pair_count = 0;
   };
 
-  void divide(const SourcePoints& source, const std::vector<float>& times_s);
+  void divide(const MovingSource& moving);
   void evaluate(const MotionPrior& prior, State& state);
 
   NdtTarget target_;

@@ -25,6 +25,7 @@ class PoseFinder;
 struct PoseAttempt;
 struct MotionPrior;
 struct RefinedMotion;
+struct ScanMotion;
 }  // namespace internal
 
 struct SAW_NDT_EXPORT LocalizerOptions {
@@ -162,9 +163,10 @@ class SAW_NDT_EXPORT Localizer {
   static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options, const NdtTarget* target);
   internal::PoseAttempt locate(const SourcePoints& source, ScanInWork& scan);
   internal::PoseAttempt locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan);
-  std::optional<internal::RefinedMotion> refinedAtAnySpeed(const SourcePoints& measured,
-                                                           const internal::PoseAttempt& found,
+  std::optional<internal::RefinedMotion> refinedAtAnySpeed(const internal::PoseAttempt& found,
                                                            const internal::MotionPrior& prior);
+  internal::PoseAttempt refined(const internal::PoseAttempt& found, const ScanPriors& priors, const ScanInWork& scan,
+                                std::optional<internal::ScanMotion>& motion);
 
   std::unique_ptr<internal::PoseFinder> finder_;
   std::unique_ptr<OngoingSearch> ongoing_search_;
