@@ -3,6 +3,7 @@
 #include "app_options.h"
 #include "bin_fields_argument.h"
 #include "common/atomic_output.h"
+#include "motion_argument.h"
 #include "progress_bar.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
@@ -17,6 +18,22 @@ constexpr char kDescription[] =
     "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. A scan that "
     "cannot be read is left out. The same scans give the same bytes, in any order and with any number of threads.";
 
+// Without stamps no motion is known: scans are then taken as they are, unless something else is asked for.
+void setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt::MotionArgument& motion,
+                           const saw_ndt::KittiSequence& sequence, const std::vector<int>& selected,
+                           saw_ndt::DriveMapOptions& options) {
+  const bool has_stamps = std::filesystem::exists(sequence.folder() / "times.txt");
+  options.motion_compensation = motion.value().value_or(saw_ndt::MotionCompensation::OFF);
+  const bool is_off = options.motion_compensation == saw_ndt::MotionCompensation::OFF;
+  if (!has_stamps && is_off) return;
+  options.scan_period_s = sequence.scanPeriod();
+  options.trajectory = sequence.trajectory();
+  if (motion.value()) return;
+  const saw_ndt::MotionTrial trial = saw_ndt::tryMotionCompensation(options, *sequence.scans(selected));
+  tellDecision(app, trial);
+  options.motion_compensation = trial.compensation;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -25,6 +42,7 @@ int main(int argc, char** argv) {
   saw_ndt::DriveMapOptions options;
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::BinFieldsArgument bin_fields;
+  saw_ndt::MotionArgument motion;
   saw_ndt::AppOptions app("saw_ndt_build_map", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt");
   app.addPositional("MAP", &map_file, "map file to write");
@@ -34,6 +52,7 @@ int main(int argc, char** argv) {
                 "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
   app.addFlag("classical", &classical, "do not segment: raw points without labels");
   app.addFlag("strict", &strict, "a scan that cannot be read is an error, and nothing is written");
+  motion.addTo(app);
   bin_fields.addTo(app);
   segmentation.addTo(app);
 
@@ -50,6 +69,7 @@ int main(int argc, char** argv) {
     // Found out before the long work: whether the map can be written. This leaves nothing behind.
     { const saw_ndt::internal::AtomicOutput probe(map_file); }
 
+    setMotionCompensation(app, motion, sequence, selected, options);
     saw_ndt::ProgressBar progress(selected.size());
     std::vector<std::string> left_out;
     if (!strict) {

@@ -5,6 +5,7 @@
 #include "bin_fields_argument.h"
 #include "drives/prior_sources.h"
 #include "io/stamp_check.h"
+#include "motion_argument.h"
 #include "output_folder.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
@@ -44,7 +45,7 @@ saw_ndt::NdtTarget loadTarget(const std::string& file, const saw_ndt::Localizati
 int main(int argc, char** argv) {
   std::string sequence_folder, map_file, out_dir, poses_file, scans = ":";
   double skip_s = 3.0;
-  std::string initial_pose, motion_compensation = "auto";
+  std::string initial_pose;
   std::vector<double> base_lidar(6, 0.0);
   saw_ndt::LocalizerOptions options;
   double initial_radius_m = kSigmas * options.prediction.initial_sigma_m;
@@ -55,6 +56,7 @@ int main(int argc, char** argv) {
   double gnss_sigma_m = 2.0;
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::BinFieldsArgument bin_fields;
+  saw_ndt::MotionArgument motion;
   std::string method = options.method.name;
   saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt, times.txt");
@@ -98,8 +100,7 @@ int main(int argc, char** argv) {
                 "a scan moved farther than this from its predicted pose is rejected, unless that is as uncertain");
   app.addOption("max-correction-deg", &options.acceptance.max_correction_deg, "DEGREES",
                 "a scan turned farther than this from its predicted pose is rejected, unless that is as uncertain");
-  app.addChoice("motion-compensation", &motion_compensation, {"auto", "off", "times", "counterclockwise", "clockwise"},
-                "x");
+  motion.addTo(app);
   app.addFlag("strict", &strict, "a scan that cannot be read makes the run a failure; the results are written");
   bin_fields.addTo(app);
   segmentation.addTo(app);
@@ -113,11 +114,6 @@ int main(int argc, char** argv) {
     options.alignment.threads = app.threads();
     options.T_base_lidar = saw_ndt::transformOf(base_lidar);
     options.search = !no_search;
-    for (const saw_ndt::MotionCompensation c :
-         {saw_ndt::MotionCompensation::OFF, saw_ndt::MotionCompensation::FROM_TIMES,
-          saw_ndt::MotionCompensation::FROM_AZIMUTH_COUNTERCLOCKWISE,
-          saw_ndt::MotionCompensation::FROM_AZIMUTH_CLOCKWISE})
-      if (motion_compensation == toString(c)) options.motion_compensation = c;
     options.prediction.initial_sigma_m = initial_radius_m / kSigmas;
     options.prediction.initial_sigma_deg = initial_yaw_range_deg / kSigmas;
     saw_ndt::checkedUsage([&] {
@@ -132,7 +128,7 @@ int main(int argc, char** argv) {
     if (no_search && initial_pose == kUnknown) {
       throw saw_ndt::UsageError("option -initial-pose unknown: excludes -no-search");
     }
-    std::optional<Eigen::Isometry3d> T_map_base_initial;
+    std::optional<Eigen::Isometry3d> T_map_base_initial;  // nothing: unknown
     if (!initial_pose.empty() && initial_pose != kUnknown) {
       T_map_base_initial = saw_ndt::transformOf(saw_ndt::parseNumbers("initial-pose", initial_pose, 6));
     }
@@ -145,13 +141,33 @@ int main(int argc, char** argv) {
     }
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
-    saw_ndt::Localizer localizer(loadTarget(map_file, options.method, app.threads()), options);
-    if (initial_pose == kUnknown) {
-      localizer.setUnknownPose();
+    if (initial_pose.empty()) {
+      T_map_base_initial =
+          sequence.posesLidar()[static_cast<std::size_t>(selected.front())] * options.T_base_lidar.inverse();
+    }
+    const auto openScans = [&] {
+      std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
+      if (!odometry_file.empty()) source = saw_ndt::withOdometry(std::move(source), odometry_file, drift);
+      if (!gnss_file.empty()) source = saw_ndt::withPositions(std::move(source), gnss_file, gnss_sigma_m);
+      return source;
+    };
+    const std::unique_ptr<saw_ndt::ScanSource> source = openScans();
+
+    const saw_ndt::NdtTarget target = loadTarget(map_file, options.method, app.threads());
+    options.scan_period_s = sequence.scanPeriod();
+    if (motion.value()) {
+      options.motion_compensation = *motion.value();
     } else {
-      localizer.setInitialPose(T_map_base_initial ? *T_map_base_initial
-                                                  : sequence.posesLidar()[static_cast<std::size_t>(selected.front())] *
-                                                        options.T_base_lidar.inverse());
+      const saw_ndt::MotionTrial trial =
+          saw_ndt::tryMotionCompensation(target, options, T_map_base_initial, *openScans());
+      tellDecision(app, trial);
+      options.motion_compensation = trial.compensation;
+    }
+    saw_ndt::Localizer localizer(target, options);
+    if (T_map_base_initial) {
+      localizer.setInitialPose(*T_map_base_initial);
+    } else {
+      localizer.setUnknownPose();
     }
 
     saw_ndt::OutputFolder folder(out_dir);
@@ -159,9 +175,6 @@ int main(int argc, char** argv) {
       saw_ndt::warn(app, (sequence.folder() / "times.txt").string() + ": " + odd);
     }
     saw_ndt::ProgressBar progress(selected.size());
-    std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
-    if (!odometry_file.empty()) source = saw_ndt::withOdometry(std::move(source), odometry_file, drift);
-    if (!gnss_file.empty()) source = saw_ndt::withPositions(std::move(source), gnss_file, gnss_sigma_m);
     bool was_lost = false;
     std::size_t done = 0;
     const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *source, [&] {
