@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <iostream>
 
 #include "app_options.h"
@@ -18,20 +19,24 @@ constexpr char kDescription[] =
     "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. A scan that "
     "cannot be read is left out. The same scans give the same bytes, in any order and with any number of threads.";
 
-// Without stamps no motion is known: scans are then taken as they are, unless something else is asked for.
-void setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt::MotionArgument& motion,
-                           const saw_ndt::KittiSequence& sequence, const std::vector<int>& selected,
-                           saw_ndt::DriveMapOptions& options) {
-  const bool has_stamps = std::filesystem::exists(sequence.folder() / "times.txt");
-  options.motion_compensation = motion.value().value_or(saw_ndt::MotionCompensation::OFF);
-  const bool is_off = options.motion_compensation == saw_ndt::MotionCompensation::OFF;
-  if (!has_stamps && is_off) return;
-  options.scan_period_s = sequence.scanPeriod();
-  options.trajectory = sequence.trajectory();
-  if (motion.value()) return;
-  const saw_ndt::MotionTrial trial = saw_ndt::tryMotionCompensation(options, *sequence.scans(selected));
-  tellDecision(app, trial);
-  options.motion_compensation = trial.compensation;
+// Sets how motion is taken out of the scans, and says why. Without stamps none is known.
+std::string setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt::MotionArgument& argument,
+                                  const saw_ndt::KittiSequence& sequence, const std::vector<int>& selected,
+                                  saw_ndt::DriveMapOptions& options) {
+  const saw_ndt::MotionTrial motion = argument.decide(app, *sequence.scans(selected), [&] {
+    if (!std::filesystem::exists(sequence.folder() / "times.txt")) {
+      return saw_ndt::MotionTrial{saw_ndt::MotionCompensation::OFF, "there is no times.txt"};
+    }
+    options.scan_period_s = sequence.scanPeriod();
+    options.trajectory = sequence.trajectory();
+    return saw_ndt::tryMotionCompensation(options, *sequence.scans(selected));
+  });
+  options.motion_compensation = motion.compensation;
+  if (motion.compensation != saw_ndt::MotionCompensation::OFF) {
+    options.scan_period_s = sequence.scanPeriod();
+    options.trajectory = sequence.trajectory();
+  }
+  return std::string("motion compensation ") + saw_ndt::toString(motion.compensation) + ": " + motion.reason;
 }
 
 }  // namespace
@@ -69,7 +74,7 @@ int main(int argc, char** argv) {
     // Found out before the long work: whether the map can be written. This leaves nothing behind.
     { const saw_ndt::internal::AtomicOutput probe(map_file); }
 
-    setMotionCompensation(app, motion, sequence, selected, options);
+    const std::string motion_text = setMotionCompensation(app, motion, sequence, selected, options);
     saw_ndt::ProgressBar progress(selected.size());
     std::vector<std::string> left_out;
     if (!strict) {
@@ -85,6 +90,6 @@ int main(int argc, char** argv) {
     std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution()
               << " m from " << map.origin().point_count << " points of " << map.origin().scan_count << " scans";
     if (!left_out.empty()) std::cout << ", " << left_out.size() << " left out";
-    std::cout << '\n';
+    std::cout << '\n' << motion_text << '\n';
   });
 }

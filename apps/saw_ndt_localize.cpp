@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
   double gnss_sigma_m = 2.0;
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::BinFieldsArgument bin_fields;
-  saw_ndt::MotionArgument motion;
+  saw_ndt::MotionArgument motion_argument;
   std::string method = options.method.name;
   saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt, times.txt");
@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
                 "a scan moved farther than this from its predicted pose is rejected, unless that is as uncertain");
   app.addOption("max-correction-deg", &options.acceptance.max_correction_deg, "DEGREES",
                 "a scan turned farther than this from its predicted pose is rejected, unless that is as uncertain");
-  motion.addTo(app);
+  motion_argument.addTo(app);
   app.addFlag("strict", &strict, "a scan that cannot be read makes the run a failure; the results are written");
   bin_fields.addTo(app);
   segmentation.addTo(app);
@@ -151,18 +151,12 @@ int main(int argc, char** argv) {
       if (!gnss_file.empty()) source = saw_ndt::withPositions(std::move(source), gnss_file, gnss_sigma_m);
       return source;
     };
-    const std::unique_ptr<saw_ndt::ScanSource> source = openScans();
-
     const saw_ndt::NdtTarget target = loadTarget(map_file, options.method, app.threads());
     options.scan_period_s = sequence.scanPeriod();
-    if (motion.value()) {
-      options.motion_compensation = *motion.value();
-    } else {
-      const saw_ndt::MotionTrial trial =
-          saw_ndt::tryMotionCompensation(target, options, T_map_base_initial, *openScans());
-      tellDecision(app, trial);
-      options.motion_compensation = trial.compensation;
-    }
+    const saw_ndt::MotionTrial motion = motion_argument.decide(app, *openScans(), [&] {
+      return saw_ndt::tryMotionCompensation(target, options, T_map_base_initial, *openScans());
+    });
+    options.motion_compensation = motion.compensation;
     saw_ndt::Localizer localizer(target, options);
     if (T_map_base_initial) {
       localizer.setInitialPose(*T_map_base_initial);
@@ -174,6 +168,7 @@ int main(int argc, char** argv) {
     for (const std::string& odd : saw_ndt::internal::oddStamps(sequence.stamps())) {
       saw_ndt::warn(app, (sequence.folder() / "times.txt").string() + ": " + odd);
     }
+    const std::unique_ptr<saw_ndt::ScanSource> source = openScans();
     saw_ndt::ProgressBar progress(selected.size());
     bool was_lost = false;
     std::size_t done = 0;
@@ -190,7 +185,17 @@ int main(int argc, char** argv) {
       std::cerr << app.name() << ": " << failure << ": rejected\n";
       ++unreadable;
     }
-    const saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
+    std::size_t without_times = 0;
+    for (const saw_ndt::LocalizationResult& result : run.results) {
+      without_times += result.acceptance != saw_ndt::Acceptance::UNREADABLE && !result.motion_compensated ? 1 : 0;
+    }
+    if (motion.compensation != saw_ndt::MotionCompensation::OFF && without_times > 0) {
+      saw_ndt::warn(app, "-motion-compensation " + std::string(saw_ndt::toString(motion.compensation)) +
+                             ": the points of " + std::to_string(without_times) +
+                             " scans have no times: these were taken as they are");
+    }
+    saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
+    summary.motion_compensation_reason = motion.reason;
     if (sequence.hasPoses() && !summary.metrics && summary.accepted > 0) {
       std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
     }

@@ -341,6 +341,7 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
   const internal::Stopwatch alignment;
   const PoseAttempt found = moving_ ? locateMoving(source, priors, work) : locate(source, work);
   result.times.align_ms = alignment.milliseconds();
+  result.motion_compensated = moving_ && moving_->source.hasTimes();
 
   result.alignment = found.alignment;
   result.correction = correctionOf(result.T_map_base_predicted, found.alignment.T_map_source);

@@ -35,8 +35,8 @@ struct SAW_NDT_EXPORT LocalizerOptions {
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< mounting of the LiDAR on the vehicle
   /// Where scans are skewed by the motion of the LiDAR: how points are told when they were measured. They are
   /// registered as seen at the stamp, by the motion of ScanPriors where that is given, else by the predicted one, and
-  /// again by that found if it moves points by a centimetre more. Where no motion is known yet, the speed straight on
-  /// is tried out.
+  /// again by that with which they fit the map best, if it moves points by a centimetre more. Where no motion is known
+  /// yet, speeds straight on are tried out. With an aligner of one's own, the predicted motion is all that is taken.
   MotionCompensation motion_compensation = MotionCompensation::OFF;
   double scan_period_s = 0.0;  ///< how long a turn of the LiDAR takes, where azimuths tell times; 0: from the stamps
   MotionPredictionOptions prediction;
@@ -86,6 +86,8 @@ struct LocalizationResult {
   Matrix6d covariance = Matrix6d::Zero();
   /// Along which the scan does not hold the pose, as AlignmentResult::free_directions; none where it was rejected.
   PoseDirections free_directions = PoseDirections(6, 0);
+  /// The points told when they were measured, and what the motion of the LiDAR does to them was taken out.
+  bool motion_compensated = false;
   PoseCorrection correction;  ///< of the prediction by registration
   SearchExtent search = SearchExtent::NONE;
   std::size_t source_points = 0;
