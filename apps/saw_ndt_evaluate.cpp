@@ -120,10 +120,8 @@ int main(int argc, char** argv) {
   return saw_ndt::runApp(argc, argv, app, [&] {
     if (skip_s < 0.0) throw saw_ndt::UsageError("option -skip: must be 0 or greater");
     const auto [reference, estimate] = readTrajectories(files);
-    checkStamps(
-        app, files.times.empty() || reference.format == saw_ndt::TrajectoryFormat::TUM ? files.reference : files.times,
-        reference);
-    checkStamps(app, files.estimate, estimate);
+    checkStamps(app, files, files.reference, reference);
+    checkStamps(app, files, files.estimate, estimate);
     const auto pairs = saw_ndt::matchTrajectories(reference.poses, estimate.poses, skip_s);
     checkPairs(app, files, estimate, pairs.size(), skip_s);
     nlohmann::ordered_json report = saw_ndt::toJson(saw_ndt::evaluatePosePairs(pairs));

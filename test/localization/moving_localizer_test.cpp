@@ -12,7 +12,7 @@ namespace saw_ndt {
 namespace {
 
 constexpr double kSpeed_mps = 15.0;
-constexpr int kScans = 12;
+constexpr int kScans = 8;
 
 /// Drives of a LiDAR whose motion skews its scans by 0.75 m and 0.7 degrees, in a map of scans without skew.
 class MovingLocalizer : public ::testing::Test {
