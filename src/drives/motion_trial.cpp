@@ -58,35 +58,33 @@ double fitOf(const AlignmentResult& alignment) {
   return alignment.converged() ? alignment.likelihoods.unweighted * alignment.overlap : 0.0;
 }
 
-bool isBetter(const Candidate& candidate, const Candidate& off) {
-  const auto count = static_cast<double>(off.fits.size());
-  const double gain = candidate.mean() - off.mean();
+bool isBetter(const Candidate& candidate, const Candidate& other) {
+  const auto count = static_cast<double>(other.fits.size());
+  const double gain = candidate.mean() - other.mean();
   double squares = 0.0;
-  for (std::size_t i = 0; i < off.fits.size(); ++i) {
-    const double deviation = candidate.fits[i] - off.fits[i] - gain;
+  for (std::size_t i = 0; i < other.fits.size(); ++i) {
+    const double deviation = candidate.fits[i] - other.fits[i] - gain;
     squares += deviation * deviation;
   }
   const double sigma = std::sqrt(squares / (count * (count - 1.0)));
-  return gain > kLeastGain * off.mean() && gain > kLeastGain_sigmas * sigma;
+  return gain > kLeastGain * other.mean() && gain > kLeastGain_sigmas * sigma;
 }
 
-// The first candidate is OFF.
+// The one that is better than every other, else OFF, which is the first.
 MotionTrial decide(const std::vector<Candidate>& candidates) {
-  const Candidate& off = candidates.front();
-  const Candidate* best = &off;
   MotionTrial trial;
   for (const Candidate& candidate : candidates) {
+    const bool is_off = candidate.compensation == MotionCompensation::OFF;
     char text[64];
-    std::snprintf(text, sizeof text, "%s%.2f %s", trial.reason.empty() ? "" : ", ", candidate.mean(),
-                  &candidate == &off ? "as they are" : toString(candidate.compensation));
+    std::snprintf(text, sizeof text, "%s%.2f %s", is_off ? "" : ", ", candidate.mean(),
+                  is_off ? "as they are" : toString(candidate.compensation));
     trial.reason += text;
-    if (isBetter(candidate, off) && candidate.mean() > best->mean()) best = &candidate;
+    const bool is_best = std::all_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+      return &other == &candidate || isBetter(candidate, other);
+    });
+    if (is_best) trial.compensation = candidate.compensation;
   }
-  // What is skewed is skewed more by the wrong direction; where both gain, it is by something else.
-  const bool all_gain = candidates.size() > 2 && std::all_of(candidates.begin() + 1, candidates.end(),
-                                                             [&](const Candidate& c) { return c.mean() > off.mean(); });
-  trial.compensation = all_gain ? MotionCompensation::OFF : best->compensation;
-  trial.reason = std::to_string(off.fits.size()) + " moving scans fit by " + trial.reason;
+  trial.reason = std::to_string(candidates.front().fits.size()) + " moving scans fit by " + trial.reason;
   return trial;
 }
 

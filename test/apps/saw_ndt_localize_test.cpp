@@ -360,8 +360,7 @@ class SkewedDrive : public LocalizeApp {
     EXPECT_NE(built.output.find("\nmotion compensation off: "), std::string::npos) << built.output;
   }
   AppResult localizeIn(const std::filesystem::path& drive, const std::string& more = "") const {
-    return runAppProgram(SAW_NDT_APP,
-                         quoted(drive) + quoted(map_file) + quoted(out) + kSensor + "-threads 2 -skip 0 " + more);
+    return runAppProgram(SAW_NDT_APP, quoted(drive) + quoted(map_file) + quoted(out) + kSensor + "-skip 0 " + more);
   }
 
   const std::filesystem::path raw_folder = folder.path() / "raw", even_folder = folder.path() / "even";
