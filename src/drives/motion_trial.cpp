@@ -101,6 +101,7 @@ double skewOf(const BodyMotion& motion, double period_s) {
 struct MovingScans {
   std::vector<RecordedScan> scans;
   std::optional<Eigen::Isometry3d> T_map_base_initial;
+  bool was_found = false;  // that is a pose of the map, not a guess
 };
 
 MovingScans firstMovingScans(Localizer localizer, const std::optional<Eigen::Isometry3d>& T_map_base_initial,
@@ -119,6 +120,7 @@ MovingScans firstMovingScans(Localizer localizer, const std::optional<Eigen::Iso
           result.accepted() && (!result.track.velocity_known || skewOf(motion, period.seconds()) < kLeastSkew_m);
       if (stands) {
         moving.T_map_base_initial = result.T_map_base;
+        moving.was_found = true;
         continue;
       }
     }
@@ -207,6 +209,8 @@ MotionTrial tryMotionCompensation(const NdtTarget& target, const LocalizerOption
   const MovingScans moving = firstMovingScans(std::move(as_they_are), T_map_base_initial, scans);
   if (moving.scans.size() < kLeastScans) return tooFewScans();
   std::vector<Candidate> candidates = candidatesFor(moving.scans);
+  // Those that go wrong need not be looked for.
+  with.search = options.search && !moving.was_found;
   for (Candidate& candidate : candidates) {
     with.motion_compensation = candidate.compensation;
     Localizer localizer(target, with);
