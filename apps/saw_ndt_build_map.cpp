@@ -1,8 +1,10 @@
+#include <filesystem>
 #include <iostream>
 
 #include "app_options.h"
 #include "bin_fields_argument.h"
 #include "common/atomic_output.h"
+#include "motion_argument.h"
 #include "progress_bar.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/kitti_sequence.h"
@@ -17,6 +19,26 @@ constexpr char kDescription[] =
     "saw_ndt_localize; with -classical they are taken raw and the map serves the method classical alone. A scan that "
     "cannot be read is left out. The same scans give the same bytes, in any order and with any number of threads.";
 
+// Sets how motion is taken out of the scans, and says why. Without stamps none is known.
+std::string setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt::MotionArgument& argument,
+                                  const saw_ndt::KittiSequence& sequence, const std::vector<int>& selected,
+                                  saw_ndt::DriveMapOptions& options) {
+  const saw_ndt::MotionTrial motion = argument.decide(app, *sequence.scans(selected), [&] {
+    if (!std::filesystem::exists(sequence.folder() / "times.txt")) {
+      return saw_ndt::MotionTrial{saw_ndt::MotionCompensation::OFF, "there is no times.txt"};
+    }
+    options.scan_period_s = sequence.scanPeriod();
+    options.trajectory = sequence.trajectory();
+    return saw_ndt::tryMotionCompensation(options, *sequence.scans(selected));
+  });
+  options.motion_compensation = motion.compensation;
+  if (motion.compensation != saw_ndt::MotionCompensation::OFF) {
+    options.scan_period_s = sequence.scanPeriod();
+    options.trajectory = sequence.trajectory();
+  }
+  return std::string("motion compensation ") + saw_ndt::toString(motion.compensation) + ": " + motion.reason;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -25,6 +47,7 @@ int main(int argc, char** argv) {
   saw_ndt::DriveMapOptions options;
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::BinFieldsArgument bin_fields;
+  saw_ndt::MotionArgument motion;
   saw_ndt::AppOptions app("saw_ndt_build_map", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt");
   app.addPositional("MAP", &map_file, "map file to write");
@@ -34,6 +57,7 @@ int main(int argc, char** argv) {
                 "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
   app.addFlag("classical", &classical, "do not segment: raw points without labels");
   app.addFlag("strict", &strict, "a scan that cannot be read is an error, and nothing is written");
+  motion.addTo(app);
   bin_fields.addTo(app);
   segmentation.addTo(app);
 
@@ -54,6 +78,7 @@ int main(int argc, char** argv) {
       options.segmentation = segmentation.learnedFrom(saw_ndt::firstScans(*sequence.scans(selected)));
     }
 
+    const std::string motion_text = setMotionCompensation(app, motion, sequence, selected, options);
     saw_ndt::ProgressBar progress(selected.size());
     std::vector<std::string> left_out;
     if (!strict) {
@@ -69,6 +94,6 @@ int main(int argc, char** argv) {
     std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution()
               << " m from " << map.origin().point_count << " points of " << map.origin().scan_count << " scans";
     if (!left_out.empty()) std::cout << ", " << left_out.size() << " left out";
-    std::cout << '\n';
+    std::cout << '\n' << motion_text << '\n';
   });
 }

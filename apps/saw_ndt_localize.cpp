@@ -5,6 +5,7 @@
 #include "bin_fields_argument.h"
 #include "drives/prior_sources.h"
 #include "io/stamp_check.h"
+#include "motion_argument.h"
 #include "output_folder.h"
 #include "pose_argument.h"
 #include "progress_bar.h"
@@ -55,6 +56,7 @@ int main(int argc, char** argv) {
   double gnss_sigma_m = 2.0;
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::BinFieldsArgument bin_fields;
+  saw_ndt::MotionArgument motion_argument;
   std::string method = options.method.name;
   saw_ndt::AppOptions app("saw_ndt_localize", kDescription);
   app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt, times.txt");
@@ -98,6 +100,7 @@ int main(int argc, char** argv) {
                 "a scan moved farther than this from its predicted pose is rejected, unless that is as uncertain");
   app.addOption("max-correction-deg", &options.acceptance.max_correction_deg, "DEGREES",
                 "a scan turned farther than this from its predicted pose is rejected, unless that is as uncertain");
+  motion_argument.addTo(app);
   app.addFlag("strict", &strict, "a scan that cannot be read makes the run a failure; the results are written");
   bin_fields.addTo(app);
   segmentation.addTo(app);
@@ -125,7 +128,7 @@ int main(int argc, char** argv) {
     if (no_search && initial_pose == kUnknown) {
       throw saw_ndt::UsageError("option -initial-pose unknown: excludes -no-search");
     }
-    std::optional<Eigen::Isometry3d> T_map_base_initial;
+    std::optional<Eigen::Isometry3d> T_map_base_initial;  // nothing: unknown
     if (!initial_pose.empty() && initial_pose != kUnknown) {
       T_map_base_initial = saw_ndt::transformOf(saw_ndt::parseNumbers("initial-pose", initial_pose, 6));
     }
@@ -138,28 +141,39 @@ int main(int argc, char** argv) {
     }
     const Eigen::Isometry3d T_camera_lidar = sequence.T_camera_lidar();
 
+    if (initial_pose.empty()) {
+      T_map_base_initial =
+          sequence.posesLidar()[static_cast<std::size_t>(selected.front())] * options.T_base_lidar.inverse();
+    }
+    const auto openScans = [&] {
+      std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
+      if (!odometry_file.empty()) source = saw_ndt::withOdometry(std::move(source), odometry_file, drift);
+      if (!gnss_file.empty()) source = saw_ndt::withPositions(std::move(source), gnss_file, gnss_sigma_m);
+      return source;
+    };
     const saw_ndt::NdtTarget target = loadTarget(map_file, options.method, app.threads());
     if (options.method.segment) {
       options.segmentation = segmentation.learnedFrom(saw_ndt::firstScans(*sequence.scans(selected)),
                                                       {options.T_base_lidar.linear(), target.origin().segmentation});
     }
+    options.scan_period_s = sequence.scanPeriod();
+    const saw_ndt::MotionTrial motion = motion_argument.decide(app, *openScans(), [&] {
+      return saw_ndt::tryMotionCompensation(target, options, T_map_base_initial, *openScans());
+    });
+    options.motion_compensation = motion.compensation;
     saw_ndt::Localizer localizer(target, options);
-    if (initial_pose == kUnknown) {
-      localizer.setUnknownPose();
+    if (T_map_base_initial) {
+      localizer.setInitialPose(*T_map_base_initial);
     } else {
-      localizer.setInitialPose(T_map_base_initial ? *T_map_base_initial
-                                                  : sequence.posesLidar()[static_cast<std::size_t>(selected.front())] *
-                                                        options.T_base_lidar.inverse());
+      localizer.setUnknownPose();
     }
 
     saw_ndt::OutputFolder folder(out_dir);
     for (const std::string& odd : saw_ndt::internal::oddStamps(sequence.stamps())) {
       saw_ndt::warn(app, (sequence.folder() / "times.txt").string() + ": " + odd);
     }
+    const std::unique_ptr<saw_ndt::ScanSource> source = openScans();
     saw_ndt::ProgressBar progress(selected.size());
-    std::unique_ptr<saw_ndt::ScanSource> source = sequence.scans(selected);
-    if (!odometry_file.empty()) source = saw_ndt::withOdometry(std::move(source), odometry_file, drift);
-    if (!gnss_file.empty()) source = saw_ndt::withPositions(std::move(source), gnss_file, gnss_sigma_m);
     bool was_lost = false;
     std::size_t done = 0;
     const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *source, [&] {
@@ -175,7 +189,17 @@ int main(int argc, char** argv) {
       std::cerr << app.name() << ": " << failure << ": rejected\n";
       ++unreadable;
     }
-    const saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
+    std::size_t without_times = 0;
+    for (const saw_ndt::LocalizationResult& result : run.results) {
+      without_times += result.acceptance != saw_ndt::Acceptance::UNREADABLE && !result.motion_compensated ? 1 : 0;
+    }
+    if (motion.compensation != saw_ndt::MotionCompensation::OFF && without_times > 0) {
+      saw_ndt::warn(app, "-motion-compensation " + std::string(saw_ndt::toString(motion.compensation)) +
+                             ": the points of " + std::to_string(without_times) +
+                             " scans have no times: these were taken as they are");
+    }
+    saw_ndt::LocalizationSummary summary = saw_ndt::summarize(run, localizer.options(), skip_s);
+    summary.motion_compensation_reason = motion.reason;
     if (sequence.hasPoses() && !summary.metrics && summary.accepted > 0) {
       std::cerr << app.name() << ": no scan is left after -skip " << skip_s << " s: the summary has no errors\n";
     }

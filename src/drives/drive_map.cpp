@@ -1,9 +1,12 @@
 #include "saw_ndt/drives/drive_map.h"
 
+#include <cmath>
 #include <exception>
 #include <mutex>
 
 #include "common/executor.h"
+#include "drives/reference_motion.h"
+#include "localization/motion_compensation.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -33,6 +36,11 @@ class SharedSource {
                                            : Error(scan.failure));
     return false;
   }
+  /// A scan that next() gave is an error.
+  void fail(const Error& error) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!failure_) failure_ = std::make_exception_ptr(error);
+  }
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }
@@ -45,11 +53,27 @@ class SharedSource {
   std::exception_ptr failure_;
 };
 
+// The scan as seen at its stamp. @throws Error where that is not known
+ScanView compensated(const RecordedScan& scan, const DriveMapOptions& options, std::vector<LidarPoint>& moved) {
+  const auto motion = internal::motionAt(options.trajectory, scan.stamp_s);
+  if (!motion) throw Error(scan.name, "", "its motion, to be taken out, is not known: no poses close in time");
+  if (!internal::compensateScan(viewOf(scan), options.motion_compensation, {scan.stamp_s, options.scan_period_s},
+                                *motion, moved)) {
+    throw Error(scan.name, "", "its points have no times of measurement to take the motion out by");
+  }
+  return viewOf(moved);
+}
+
 }  // namespace
+
+void DriveMapOptions::check() const {
+  if (segmentation) segmentation->check();
+  checkOption(scan_period_s > 0.0 && std::isfinite(scan_period_s), "scan_period_s", scan_period_s, "positive");
+}
 
 WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,
                                  const std::function<void()>& scan_done) {
-  if (options.segmentation) options.segmentation->check();
+  options.check();
   WeightedMapBuilder map(options.resolution_m, options.segmentation);
   SharedSource source(scans, options.scan_left_out);
   // Threads read and segment scans. What takes memory, the sums, there is once, and a scan is added to it in a fraction
@@ -59,10 +83,19 @@ WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& optio
   internal::forEachChunkOffline(threads, static_cast<std::size_t>(threads), [&](std::size_t, int) {
     ScanSegmenter segmenter(options.segmentation.value_or(SegmentationOptions()));
     std::vector<StructuralLabel> labels;
+    std::vector<LidarPoint> moved;
     RecordedScan scan;
     while (source.next(scan)) {
-      const ScanView view = viewOf(scan);
+      ScanView view = viewOf(scan);
       if (options.segmentation) segmenter.segment(view, labels);
+      if (options.motion_compensation != MotionCompensation::OFF) {
+        try {
+          view = compensated(scan, options, moved);
+        } catch (const Error& error) {
+          source.fail(error);
+          return;
+        }
+      }
       {
         const std::lock_guard<std::mutex> lock(map_mutex);
         map.addScan(view, options.segmentation ? LabelView(labels) : LabelView(), *scan.T_map_lidar);

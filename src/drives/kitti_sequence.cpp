@@ -181,6 +181,27 @@ const std::vector<Eigen::Isometry3d>& KittiSequence::posesLidar() const {
   return T_map_lidar_;
 }
 
+double KittiSequence::scanPeriod() const {
+  std::vector<double> periods_s;
+  const std::vector<double>& stamps_s = stamps();
+  for (std::size_t i = 1; i < stamps_s.size(); ++i) {
+    if (stamps_s[i] > stamps_s[i - 1]) periods_s.push_back(stamps_s[i] - stamps_s[i - 1]);
+  }
+  if (periods_s.empty()) return kNominalScanPeriod_s;
+  const auto middle = periods_s.begin() + static_cast<std::ptrdiff_t>(periods_s.size() / 2);
+  std::nth_element(periods_s.begin(), middle, periods_s.end());
+  return *middle;
+}
+
+std::vector<StampedPose> KittiSequence::trajectory() const {
+  std::vector<StampedPose> result;
+  const std::vector<Eigen::Isometry3d>& T_map_lidar = posesLidar();
+  for (std::size_t i = 0; i < stamps().size(); ++i) {
+    if (result.empty() || stamps()[i] > result.back().stamp_s) result.push_back({stamps()[i], T_map_lidar[i]});
+  }
+  return result;
+}
+
 std::unique_ptr<ScanSource> KittiSequence::scans(const std::vector<int>& numbers) const {
   return std::make_unique<SelectedScans>(*this, numbers);
 }

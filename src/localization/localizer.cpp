@@ -9,6 +9,9 @@
 
 #include "common/executor.h"
 #include "common/stopwatch.h"
+#include "localization/motion_compensation.h"
+#include "localization/motion_knowledge.h"
+#include "localization/motion_refinement.h"
 #include "localization/pose_finder.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
@@ -27,6 +30,7 @@ ScanPreparationOptions preparationOptions(const LocalizerOptions& options) {
   preparation.confidence = options.method.voxels.confidence;
   preparation.source_voxel_size_m = options.source_voxel_size_m;
   preparation.T_base_lidar = options.T_base_lidar;
+  preparation.motion_compensation = options.motion_compensation;
   preparation.threads = options.alignment.threads;
   return preparation;
 }
@@ -53,6 +57,12 @@ SegmentationOptions mountedAs(SegmentationOptions options, const SegmentationOpt
   options.vehicle_box_m = other.vehicle_box_m;
   options.ground.sensor_height_m = other.ground.sensor_height_m;
   return options;
+}
+
+// How well poses explain scans that are compensated by different motions. The score alone would draw points to where
+// the map is coarse.
+double fitOf(const AlignmentResult& alignment) {
+  return alignment.converged() ? alignment.likelihoods.unweighted * alignment.overlap : -1.0;
 }
 
 void requireSegmentedAlike(const MapOrigin& origin, const LocalizerOptions& options) {
@@ -88,6 +98,7 @@ void LocalizerOptions::check() const {
   alignment.check();
   acceptance.check();
   global_search.check();
+  checkOption(scan_period_s >= 0.0 && std::isfinite(scan_period_s), "scan_period_s", scan_period_s, "0 or more");
   checkOption(search_budget_ms > 0.0, "search_budget_ms", search_budget_ms, "positive");
   preparationOptions(*this).check();
 }
@@ -102,13 +113,40 @@ Localizer::Localizer(const NdtTarget& target, const LocalizerOptions& options)
     : options_(withMethod(options)),
       preparation_(preparationOptions(options_)),
       prediction_(options.prediction),
-      finder_(std::make_unique<PoseFinder>(alignerTo(target, options_), target, options_)) {}
+      finder_(std::make_unique<PoseFinder>(alignerTo(target, options_), target, options_)),
+      moving_(makeMoving(options_, &target)) {}
 
 Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
     : options_(withMethod(options)),
       preparation_(preparationOptions(options_)),
       prediction_(options.prediction),
-      finder_(std::make_unique<PoseFinder>(std::move(aligner), options_)) {}
+      finder_(std::make_unique<PoseFinder>(std::move(aligner), options_)),
+      moving_(makeMoving(options_, nullptr)) {}
+
+// A scan on its way through localize().
+struct Localizer::ScanInWork {
+  Stopwatch since_start;
+  double stamp_s = 0.0;
+  UncertainPose predicted;
+  bool has_position = false;   // the prediction was corrected by a measured one
+  bool without_track = false;  // what is known of the vehicle does not help
+};
+
+// What is needed where the motion of the LiDAR skews scans.
+struct Localizer::Moving {
+  Moving(const LocalizerOptions& options, const NdtTarget* target) : motion(options.prediction, options.scan_period_s) {
+    if (target != nullptr) refinement.emplace(*target, options.alignment);
+  }
+
+  MotionKnowledge motion;
+  MovingSource source;
+  std::optional<MotionRefinement> refinement;  // not with an aligner of another kind
+};
+
+std::unique_ptr<Localizer::Moving> Localizer::makeMoving(const LocalizerOptions& options, const NdtTarget* target) {
+  if (options.motion_compensation == MotionCompensation::OFF) return nullptr;
+  return std::make_unique<Moving>(options, target);
+}
 
 // A search in a thread of its own.
 struct Localizer::OngoingSearch {
@@ -136,19 +174,23 @@ const char* toString(SearchExtent extent) {
 void Localizer::setUnknownPose() {
   if (!finder_->canSearch()) throw std::logic_error("setUnknownPose: there is no search, or no target to search in");
   prediction_.resetUnknown();
+  if (moving_) moving_->motion.forget();
   if (ongoing_search_) ongoing_search_->outdated = true;
 }
 
 void Localizer::setInitialPose(const Eigen::Isometry3d& T_map_base) {
   prediction_.reset(T_map_base);
+  if (moving_) moving_->motion.forget();
   if (ongoing_search_) ongoing_search_->outdated = true;
 }
 
+PoseExpectation Localizer::expectation(const UncertainPose& predicted, double stamp_s) const {
+  return finder_->judge().expect(predicted.T_map_base, predicted.covariance, prediction_.state(), stamp_s,
+                                 options_.prediction.max_turn_rate_radps);
+}
+
 PoseAttempt Localizer::find(const SourcePoints& source, const UncertainPose& predicted, double stamp_s) {
-  const TrackState& track = prediction_.state();
-  const PoseExpectation expectation = finder_->judge().expect(predicted.T_map_base, predicted.covariance, track,
-                                                              stamp_s, options_.prediction.max_turn_rate_radps);
-  return finder_->find(source, expectation, track);
+  return finder_->find(source, expectation(predicted, stamp_s), prediction_.state());
 }
 
 // Within the budget; what is found later is where the vehicle was, from which the next scan goes on.
@@ -212,37 +254,106 @@ UncertainPose Localizer::accept(const PoseAttempt& found, double stamp_s,
   return {prediction_.state().T_map_base, prediction_.state().covariance};
 }
 
+PoseAttempt Localizer::locate(const SourcePoints& source, ScanInWork& scan) {
+  PoseAttempt found = find(source, scan.predicted, scan.stamp_s);
+  if (!found.accepted() && scan.has_position && !scan.without_track) {
+    // The position may be an outlier that nobody could tell.
+    const PoseAttempt other =
+        find(source, {prediction_.predict(scan.stamp_s), prediction_.predictedCovariance(scan.stamp_s)}, scan.stamp_s);
+    if (other.accepted()) found = other;
+  }
+  const bool is_lost = prediction_.state().isLost() || !PoseFinder::isInReach(scan.predicted.covariance);
+  if (is_lost && finder_->isWorthSearching(found, prediction_.state())) {
+    const PoseAttempt other = searchEverywhere(source, scan.stamp_s, scan.since_start.milliseconds());
+    found.search = other.search;
+    if (other.accepted() || scan.without_track) found = other;
+  } else if (ongoing_search_) {
+    ongoing_search_->outdated = true;
+  }
+  return found;
+}
+
+// A vehicle of which no speed is known yet may have any straight on: the one at which the scan fits the map best.
+std::optional<RefinedMotion> Localizer::refinedAtAnySpeed(const PoseAttempt& found, const MotionPrior& prior) {
+  constexpr double kFastest_mps = 40.0;
+  constexpr double kStep_mps = 10.0;
+  Moving& moving = *moving_;
+  std::optional<RefinedMotion> best;
+  double best_fit = 0.0;
+  Eigen::Isometry3d start = found.alignment.T_map_source;
+  for (double speed_mps = 0.0; speed_mps <= kFastest_mps; speed_mps += kStep_mps) {
+    const ScanMotion motion = ScanMotion::even({speed_mps * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()});
+    const AlignmentResult alignment = finder_->align(moving.source.compensatedBy(motion), start);
+    if (!alignment.converged()) continue;
+    start = alignment.T_map_source;
+    const auto refined = moving.refinement->refine(moving.source, start, motion, prior);
+    if (!refined) continue;
+    const double fit = fitOf(finder_->align(moving.source.compensatedBy(refined->motion), refined->T_map_base));
+    if (fit <= best_fit) continue;
+    best_fit = fit;
+    best = refined;
+  }
+  return best;
+}
+
+// A scan that was found by one motion, again by that with which it fits best.
+PoseAttempt Localizer::refined(const PoseAttempt& found, const ScanPriors& priors, const ScanInWork& scan,
+                               std::optional<ScanMotion>& motion) {
+  constexpr double kNegligibleShift_m = 0.01;
+  Moving& moving = *moving_;
+  const TrackState& track = prediction_.state();
+  const bool is_elsewhere = found.search == SearchExtent::EVERYWHERE;
+  const MotionPrior prior = moving.motion.prior(track, priors, is_elsewhere);
+  const bool is_unknown = !prior.before && (!motion || is_elsewhere);
+  const ScanMotion known = motion.value_or(ScanMotion());
+  const std::optional<RefinedMotion> refined =
+      is_unknown ? refinedAtAnySpeed(found, prior)
+                 : moving.refinement->refine(moving.source, found.alignment.T_map_source, known, prior);
+  const bool is_other = refined && refined->significant &&
+                        shiftBetween(refined->motion, known, moving.source.reach_s()) >= kNegligibleShift_m;
+  if (!is_other) return found;
+  const PoseExpectation expected = expectation(scan.predicted, scan.stamp_s);
+  PoseAttempt again = finder_->findFrom(moving.source.compensatedBy(refined->motion), refined->T_map_base,
+                                        is_elsewhere ? nullptr : &expected, track);
+  if (fitOf(again.alignment) < fitOf(found.alignment) || (found.accepted() && !again.accepted())) return found;
+  again.search = found.search;
+  motion = refined->motion;
+  return again;
+}
+
+// By the motion that is expected, and then by the one that is found.
+PoseAttempt Localizer::locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan) {
+  Moving& moving = *moving_;
+  moving.source.take(measured, preparation_.times_s());
+  if (!moving.source.hasTimes()) return locate(measured, scan);
+  std::optional<ScanMotion> motion = moving.motion.expected(prediction_.state(), priors);
+  PoseAttempt found = locate(moving.source.compensatedBy(motion.value_or(ScanMotion())), scan);
+  if (found.alignment.converged() && moving.refinement) found = refined(found, priors, scan, motion);
+  if (found.accepted()) moving.motion.learn(motion.value_or(ScanMotion()));
+  return found;
+}
+
 LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, const ScanPriors& priors) {
-  const internal::Stopwatch total;
+  ScanInWork work;
   const internal::HelperSession session(options_.alignment.threads);
   LocalizationResult result;
   result.stamp_s = stamp_s;
   prediction_.move(priors.motion);
-  bool without_track = !prediction_.state().pose_known;
-  const UncertainPose predicted = predictedPose(stamp_s, priors.position, without_track);
-  result.T_map_base_predicted = predicted.T_map_base;
-  const SourcePoints& source = preparation_.prepare(scan);
+  bool& without_track = work.without_track;
+  without_track = !prediction_.state().pose_known;
+  work.stamp_s = stamp_s;
+  work.has_position = priors.position.has_value();
+  work.predicted = predictedPose(stamp_s, priors.position, without_track);
+  result.T_map_base_predicted = work.predicted.T_map_base;
+  const SourcePoints& source = preparation_.prepare(scan, moving_ ? moving_->motion.begin(stamp_s) : ScanTiming());
   result.source_points = source.size();
   result.times.segment_ms = preparation_.segmentMilliseconds();
   result.times.filter_ms = preparation_.filterMilliseconds();
 
   const internal::Stopwatch alignment;
-  PoseAttempt found = find(source, predicted, stamp_s);
-  if (!found.accepted() && priors.position && !without_track) {
-    // The position may be an outlier that nobody could tell.
-    const PoseAttempt other =
-        find(source, {prediction_.predict(stamp_s), prediction_.predictedCovariance(stamp_s)}, stamp_s);
-    if (other.accepted()) found = other;
-  }
-  const bool is_lost = prediction_.state().isLost() || !PoseFinder::isInReach(predicted.covariance);
-  if (is_lost && finder_->isWorthSearching(found, prediction_.state())) {
-    const PoseAttempt other = searchEverywhere(source, stamp_s, total.milliseconds());
-    found.search = other.search;
-    if (other.accepted() || without_track) found = other;
-  } else if (ongoing_search_) {
-    ongoing_search_->outdated = true;
-  }
+  const PoseAttempt found = moving_ ? locateMoving(source, priors, work) : locate(source, work);
   result.times.align_ms = alignment.milliseconds();
+  result.motion_compensated = moving_ && moving_->source.hasTimes();
 
   result.alignment = found.alignment;
   result.correction = correctionOf(result.T_map_base_predicted, found.alignment.T_map_source);
@@ -262,7 +373,7 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
     prediction_.reject(stamp_s, found.search == SearchExtent::EVERYWHERE);
   }
   result.track = prediction_.state();
-  result.times.total_ms = total.milliseconds();
+  result.times.total_ms = work.since_start.milliseconds();
   return result;
 }
 

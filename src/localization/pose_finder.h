@@ -41,6 +41,17 @@ class SAW_NDT_EXPORT PoseFinder {
   /// Without regard to a prediction. @pre canSearch()
   PoseAttempt findAnywhere(const SourcePoints& source, const TrackState& track = {});
 
+  /// From one pose alone, such as that of a scan whose points were not quite the same.
+  /// @param expectation  null: nothing is expected
+  PoseAttempt findFrom(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
+                       const PoseExpectation* expectation, const TrackState& track) {
+    return fromStarts(source, {T_map_base_start}, expectation, track);
+  }
+  /// An alignment alone.
+  AlignmentResult align(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start) {
+    return aligner_(source, T_map_base_start);
+  }
+
   const PoseJudge& judge() const { return judge_; }
 
  private:

@@ -1,10 +1,12 @@
 #include "saw_ndt/localization/scan_preparation.h"
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "common/executor.h"
 #include "common/stopwatch.h"
+#include "localization/motion_compensation.h"
 #include "localization/source_voxel_filter.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
@@ -12,6 +14,20 @@
 namespace saw_ndt {
 
 using namespace internal;
+
+const char* toString(MotionCompensation compensation) {
+  switch (compensation) {
+    case MotionCompensation::OFF:
+      return "off";
+    case MotionCompensation::FROM_TIMES:
+      return "times";
+    case MotionCompensation::FROM_AZIMUTH_COUNTERCLOCKWISE:
+      return "counterclockwise";
+    case MotionCompensation::FROM_AZIMUTH_CLOCKWISE:
+      return "clockwise";
+  }
+  return "unknown";
+}
 
 void ScanPreparationOptions::check() const {
   segmentation.check();
@@ -30,6 +46,7 @@ struct ScanPreparation::Parts {
   ScanSegmenter segmenter;
   std::vector<StructuralLabel> labels;
   SourceVoxelFilter filter;
+  std::vector<float> times_s;
   double segment_ms = 0.0;
   double filter_ms = 0.0;
 };
@@ -40,7 +57,7 @@ ScanPreparation::~ScanPreparation() = default;
 ScanPreparation::ScanPreparation(ScanPreparation&& other) noexcept = default;
 ScanPreparation& ScanPreparation::operator=(ScanPreparation&& other) noexcept = default;
 
-const SourcePoints& ScanPreparation::prepare(const ScanView& scan) {
+const SourcePoints& ScanPreparation::prepare(const ScanView& scan, const ScanTiming& timing) {
   Parts& parts = *parts_;
   const ScanPreparationOptions& options = parts.options;
   const internal::Stopwatch stopwatch;
@@ -48,12 +65,25 @@ const SourcePoints& ScanPreparation::prepare(const ScanView& scan) {
   parts.segment_ms = options.segment ? stopwatch.milliseconds() : 0.0;
 
   const internal::Stopwatch filter_stopwatch;
-  const SourcePoints& source = parts.filter.filter(scan, options.segment ? &parts.labels : nullptr,
-                                                   {options.ground_ratio, options.confidence, options.T_base_lidar});
+  std::optional<ScanClock> clock;
+  if (options.motion_compensation == MotionCompensation::FROM_TIMES) clock = clockOf(scan, timing.stamp_s);
+  const SourcePoints& source =
+      parts.filter.filter(scan, options.segment ? &parts.labels : nullptr,
+                          {options.ground_ratio, options.confidence, options.T_base_lidar, clock ? &*clock : nullptr});
+  if (options.motion_compensation == MotionCompensation::FROM_AZIMUTH_COUNTERCLOCKWISE ||
+      options.motion_compensation == MotionCompensation::FROM_AZIMUTH_CLOCKWISE) {
+    timesFromAzimuth(source, options.T_base_lidar,
+                     options.motion_compensation == MotionCompensation::FROM_AZIMUTH_COUNTERCLOCKWISE, timing.period_s,
+                     parts.times_s);
+  }
   parts.filter_ms = filter_stopwatch.milliseconds();
   return source;
 }
 
+const std::vector<float>& ScanPreparation::times_s() const {
+  const bool by_filter = parts_->options.motion_compensation == MotionCompensation::FROM_TIMES;
+  return by_filter ? parts_->filter.times_s() : parts_->times_s;
+}
 double ScanPreparation::segmentMilliseconds() const { return parts_->segment_ms; }
 double ScanPreparation::filterMilliseconds() const { return parts_->filter_ms; }
 

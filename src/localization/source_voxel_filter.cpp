@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/no_return.h"
+#include "localization/motion_compensation.h"
 #include "localization/source_voxel_loops.h"
 #include "saw_ndt/common/error.h"
 
@@ -51,26 +52,30 @@ const SourcePoints& SourceVoxelFilter::filter(const ScanView& scan, const std::v
   }
   points_.clear();
   points_.labelled = labels != nullptr;
+  times_s_.clear();
+  const bool timed = selection.clock != nullptr;
   if (voxel_size_m_ > 0.0) startVoxels();
   const Eigen::Isometry3f T_base_lidar = selection.T_base_lidar.cast<float>();
   const RigidTransformRows transform = rowsOf(T_base_lidar);
   const bool is_identity = T_base_lidar.matrix() == Eigen::Matrix4f::Identity();
   for (std::size_t begin = 0; begin < scan.size; begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, scan.size);
-    const std::size_t count = select(scan, begin, end, labels != nullptr ? labels->data() : nullptr, ground_sampler);
+    const std::size_t count =
+        select(scan, begin, end, labels != nullptr ? labels->data() : nullptr, selection.clock, ground_sampler);
     if (!is_identity) transformPoints(count, transform, *block_);
     if (voxel_size_m_ > 0.0) {
-      addToVoxels(count);
+      addToVoxels(count, timed);
     } else {
-      addPoints(count);
+      addPoints(count, timed);
     }
   }
-  if (voxel_size_m_ > 0.0) finishVoxels();
+  if (voxel_size_m_ > 0.0) finishVoxels(timed);
   return points_;
 }
 
 std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, std::size_t end,
-                                      const StructuralLabel* labels, GroundSampler& ground_sampler) {
+                                      const StructuralLabel* labels, const ScanClock* clock,
+                                      GroundSampler& ground_sampler) {
   SourceVoxelBlock& block = *block_;
   const std::size_t stride = scan.stride;
   const float* const first = scan.point(begin);
@@ -85,6 +90,7 @@ std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, s
   if (labels == nullptr) {
     if (!takes_label_[static_cast<std::size_t>(StructuralLabel::NON_GROUND)]) return 0;
     for (std::size_t i = 0; i < size; ++i) read(i, i);
+    if (clock != nullptr) readTimes(scan, *clock, begin, size, nullptr);
     std::fill_n(block.label, size, static_cast<std::uint8_t>(StructuralLabel::NON_GROUND));
     return size;
   }
@@ -103,14 +109,25 @@ std::size_t SourceVoxelFilter::select(const ScanView& scan, std::size_t begin, s
   }
   ground_sampler = sampler;
   for (std::size_t place = 0; place < count; ++place) read(place, taken[place]);
+  if (clock != nullptr) readTimes(scan, *clock, begin, count, taken.data());
   return count;
 }
 
-void SourceVoxelFilter::addPoints(std::size_t count) {
+void SourceVoxelFilter::readTimes(const ScanView& scan, const ScanClock& clock, std::size_t begin, std::size_t count,
+                                  const std::uint16_t* taken) {
+  block_times_s_.resize(kBlock);
+  for (std::size_t place = 0; place < count; ++place) {
+    const float time_s = clock(scan.times_s[begin + (taken != nullptr ? taken[place] : place)]);
+    block_times_s_[place] = std::isfinite(time_s) ? time_s : 0.0F;
+  }
+}
+
+void SourceVoxelFilter::addPoints(std::size_t count, bool timed) {
   const SourceVoxelBlock& block = *block_;
   for (std::size_t i = 0; i < count; ++i) {
     if (!isWithinReach(block.x[i], block.y[i], block.z[i])) continue;
     points_.add(block.x[i], block.y[i], block.z[i], static_cast<StructuralLabel>(block.label[i]));
+    if (timed) times_s_.push_back(block_times_s_[i]);
   }
 }
 
@@ -168,7 +185,7 @@ void SourceVoxelFilter::numberVoxels(std::size_t count, const std::uint64_t* key
   voxel_count_ = voxel_count;
 }
 
-void SourceVoxelFilter::addToVoxels(std::size_t count) {
+void SourceVoxelFilter::addToVoxels(std::size_t count, bool timed) {
   if (count == 0) return;
   SourceVoxelBlock& block = *block_;
   findVoxels(count, static_cast<float>(voxel_size_m_), inverse_size_, block);
@@ -188,15 +205,24 @@ void SourceVoxelFilter::addToVoxels(std::size_t count) {
   }
   numberVoxels(last + 1, keys.data(), numbers.data());
   addOffsets(count, block.offset, ordinals.data(), numbers.data(), offset_sums_.data());
+  if (!timed) return;
+  times_s_.resize(keys_.size());  // new voxels begin at 0
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t number = numbers[ordinals[i]];
+    if (number < voxel_count_) times_s_[number] += block_times_s_[i];
+  }
 }
 
-void SourceVoxelFilter::finishVoxels() {
+void SourceVoxelFilter::finishVoxels(bool timed) {
   points_.x.resize(voxel_count_);
   points_.y.resize(voxel_count_);
   points_.z.resize(voxel_count_);
   points_.label.resize(voxel_count_);
   findCentroids(voxel_count_, static_cast<float>(voxel_size_m_), keys_.data(), offset_sums_.data(), points_.x.data(),
                 points_.y.data(), points_.z.data(), points_.label.data());
+  if (!timed) return;
+  times_s_.resize(voxel_count_);
+  for (std::size_t voxel = 0; voxel < voxel_count_; ++voxel) times_s_[voxel] /= offset_sums_[4 * voxel + 3];
 }
 
 }  // namespace saw_ndt::internal

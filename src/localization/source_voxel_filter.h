@@ -15,6 +15,7 @@
 
 namespace saw_ndt::internal {
 
+struct ScanClock;
 struct SourceVoxelBlock;
 
 /// Which points of a scan become source points, and where they lie.
@@ -22,6 +23,7 @@ struct SourceSelection {
   double ground_ratio = 1.0;     ///< share of the ground points kept, 0 to 1; see GroundSampler
   ConfidenceOptions confidence;  ///< points of a label whose confidence is 0 are left out
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< from the scan's frame to that of the source
+  const ScanClock* clock = nullptr;                                ///< of the scan's times, where times_s() is wanted
 };
 
 /// Makes a source of a scan: selects its points, brings them into the frame of the source, and thins them to one
@@ -42,16 +44,20 @@ class SAW_NDT_EXPORT SourceVoxelFilter {
   ///         its limits
   const SourcePoints& filter(const ScanView& scan, const std::vector<StructuralLabel>* labels,
                              const SourceSelection& selection = SourceSelection());
+  /// When each of them was measured (s, from the stamp), the mean of the points of its voxel; empty without a clock.
+  const std::vector<float>& times_s() const { return times_s_; }
 
  private:
   std::size_t select(const ScanView& scan, std::size_t begin, std::size_t end, const StructuralLabel* labels,
-                     GroundSampler& ground_sampler);
-  void addPoints(std::size_t count);
-  void addToVoxels(std::size_t count);
+                     const ScanClock* clock, GroundSampler& ground_sampler);
+  void readTimes(const ScanView& scan, const ScanClock& clock, std::size_t begin, std::size_t count,
+                 const std::uint16_t* taken);
+  void addPoints(std::size_t count, bool timed);
+  void addToVoxels(std::size_t count, bool timed);
   void numberVoxels(std::size_t count, const std::uint64_t* keys, std::uint32_t* numbers);
   void growTable();
   void startVoxels();
-  void finishVoxels();
+  void finishVoxels(bool timed);
 
   double voxel_size_m_;
   float inverse_size_ = 0.0F;
@@ -66,6 +72,8 @@ class SAW_NDT_EXPORT SourceVoxelFilter {
   std::vector<std::uint64_t> keys_;  ///< of each voxel
   std::vector<float> offset_sums_;   ///< of each voxel: x, y, z (m) and the number of points
   SourcePoints points_;
+  std::vector<float> block_times_s_;  ///< of the points of the block
+  std::vector<float> times_s_;        ///< of points_; before they are finished, sums
 };
 
 }  // namespace saw_ndt::internal

@@ -47,6 +47,10 @@ nlohmann::ordered_json toJson(const LocalizationSummary& summary) {
   json["non_ground_likelihood_mean"] = summary.non_ground_likelihood_mean;
   json["peak_rss_mb"] = summary.peak_rss_mb;
   json["threads"] = summary.threads;
+  json["motion_compensation"] = toString(summary.motion_compensation);
+  if (!summary.motion_compensation_reason.empty()) {
+    json["motion_compensation_reason"] = summary.motion_compensation_reason;
+  }
   if (summary.metrics) json.update(toJson(*summary.metrics));
   return json;
 }

@@ -109,6 +109,7 @@ LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptio
   using R = LocalizationResult;
   LocalizationSummary summary;
   summary.method = options.method.name;
+  summary.motion_compensation = options.motion_compensation;
   summary.scans = run.results.size();
   addStates(run, summary);
   for (const R& result : run.results) ++(result.accepted() ? summary.accepted : summary.rejected);

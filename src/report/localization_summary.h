@@ -23,6 +23,8 @@ struct StateShare {
 /// The figures of a run; the fields are those of summary.json.
 struct LocalizationSummary {
   std::string method;
+  MotionCompensation motion_compensation = MotionCompensation::OFF;
+  std::string motion_compensation_reason;  ///< why, where that is known
   std::size_t scans = 0, accepted = 0, rejected = 0;
   StateShare tracking, coasting, relocalizing, lost;
   std::size_t recoveries = 0;        ///< how often a scan was accepted after ones that were not

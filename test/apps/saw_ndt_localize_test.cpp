@@ -382,5 +382,65 @@ TEST_F(LocalizeApp, RealTrajectoriesAreEvaluatedAlike) {
   expectEvaluatedAlike(sequence, {1, 3, 5, 7, 9});
 }
 
+/// Drives of a LiDAR that moves 2 m a turn, and a map of scans without skew.
+class SkewedDrive : public LocalizeApp {
+ protected:
+  SkewedDrive() {
+    const SensorModel sensor = SensorModel::named("VLP-16");
+    raw = raceDownTheStreet(sensor, 14, 20.0, 0.1, 100);
+    writeKittiDrive(raw_folder, raw);
+    writeKittiDrive(even_folder, raceDownTheStreet(sensor, 14, 20.0, 0.0, 1));
+    const AppResult built = runAppProgram(SAW_NDT_BUILD_MAP_APP, quoted(even_folder) + quoted(map_file) + kSensor);
+    EXPECT_EQ(built.exit_code, 0) << built.errors;
+    EXPECT_NE(built.output.find("\nmotion compensation off: "), std::string::npos) << built.output;
+  }
+  AppResult localizeIn(const std::filesystem::path& drive, const std::string& more = "") const {
+    return runAppProgram(SAW_NDT_APP, quoted(drive) + quoted(map_file) + quoted(out) + kSensor + "-skip 0 " + more);
+  }
+
+  const std::filesystem::path raw_folder = folder.path() / "raw", even_folder = folder.path() / "even";
+  SyntheticDrive raw;
+};
+
+TEST_F(SkewedDrive, AutoFindsOutAndRecordsIt) {
+  ASSERT_EQ(localizeIn(raw_folder).exit_code, 0);
+  nlohmann::json json = summary();
+  EXPECT_EQ(json.at("motion_compensation"), "counterclockwise");
+  EXPECT_NE(json.at("motion_compensation_reason").get<std::string>().find(" as they are"), std::string::npos);
+  EXPECT_EQ(json.at("accepted"), 14);
+  EXPECT_LT(json.at("ate_rmse_m"), 0.03);
+
+  ASSERT_EQ(localizeIn(even_folder).exit_code, 0);
+  EXPECT_EQ(summary().at("motion_compensation"), "off");
+  const std::string poses = contentOf(out / "trajectory_tum.txt");
+  ASSERT_EQ(localizeIn(even_folder, "-motion-compensation off").exit_code, 0);
+  EXPECT_EQ(contentOf(out / "trajectory_tum.txt"), poses);
+  EXPECT_EQ(summary().at("motion_compensation_reason"), "as stated");
+}
+
+TEST_F(SkewedDrive, SaysWhereScansLookSkewedOrHaveNoTimes) {
+  const AppResult no_times = localizeIn(raw_folder, "-motion-compensation times");
+  EXPECT_NE(no_times.errors.find("warning: -motion-compensation times"), std::string::npos) << no_times.errors;
+  for (std::size_t i = 0; i < raw.scans.size(); ++i) {
+    std::ostringstream bytes, name;
+    for (std::size_t k = 0; k < raw.scans[i].size(); ++k) {
+      const LidarPoint& p = raw.scans[i][k];
+      const float values[] = {p.x, p.y, p.z, p.intensity, static_cast<float>(raw.times_s[i][k])};
+      bytes.write(reinterpret_cast<const char*>(values), sizeof values);
+    }
+    name << std::setfill('0') << std::setw(6) << i << ".bin";
+    std::ofstream(raw_folder / "velodyne" / name.str(), std::ios::binary) << bytes.str();
+  }
+  const AppResult off = localizeIn(raw_folder, "-bin-fields 5 -motion-compensation off");
+  EXPECT_NE(off.errors.find("warning: -motion-compensation off, but scans look skewed"), std::string::npos)
+      << off.errors;
+  ASSERT_EQ(localizeIn(raw_folder, "-bin-fields 5").exit_code, 0);
+  EXPECT_EQ(summary().at("motion_compensation"), "times");
+  EXPECT_EQ(summary().at("accepted"), 14);
+  const AppResult map =
+      runAppProgram(SAW_NDT_BUILD_MAP_APP, quoted(raw_folder) + quoted(map_file) + kSensor + "-bin-fields 5");
+  EXPECT_NE(map.output.find("motion compensation times: "), std::string::npos) << map.output << map.errors;
+}
+
 }  // namespace
 }  // namespace saw_ndt

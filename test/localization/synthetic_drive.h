@@ -49,9 +49,14 @@ inline double rangeAmong(const std::vector<Block>& blocks, const Eigen::Vector3d
 }
 
 /// The scan of a spinning LiDAR on the ground among blocks: ring after ring from the top, azimuth rising, 1 cm of noise
-/// along the ray, nothing beyond 70 m.
-inline std::vector<LidarPoint> scanBlocks(const std::vector<Block>& blocks, const SensorModel& sensor,
-                                          const Eigen::Isometry3d& T_ground_lidar, unsigned seed) {
+/// along the ray, nothing beyond 70 m. Each point is in the frame that the LiDAR has when it measures it.
+/// @param T_ground_lidar_at  pose of the LiDAR at a time from the stamp (s)
+/// @param signed_period_s    of a turn, at the stamp along x; negative: clockwise, seen from above; 0: all at once
+/// @param times_s            of the points, from the stamp; may be null
+template <typename PoseAt>
+std::vector<LidarPoint> scanBlocksInMotion(const std::vector<Block>& blocks, const SensorModel& sensor,
+                                           const PoseAt& T_ground_lidar_at, double signed_period_s, unsigned seed,
+                                           std::vector<double>* times_s = nullptr) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 0.01);
   std::vector<LidarPoint> scan;
@@ -61,6 +66,8 @@ inline std::vector<LidarPoint> scanBlocks(const std::vector<Block>& blocks, cons
       const double azimuth = (column + 0.5) * 2.0 * kPi / sensor.columns;
       const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                       std::sin(elevation));
+      const double time_s = signed_period_s * (azimuth < kPi ? azimuth : azimuth - 2.0 * kPi) / (2.0 * kPi);
+      const Eigen::Isometry3d T_ground_lidar = T_ground_lidar_at(time_s);
       const double range =
           rangeAmong(blocks, T_ground_lidar.translation(), T_ground_lidar.linear() * direction) + noise(random);
       if (!(range < 70.0)) continue;
@@ -68,9 +75,17 @@ inline std::vector<LidarPoint> scanBlocks(const std::vector<Block>& blocks, cons
       positionOf(point) = (direction * range).cast<float>();
       point.intensity = 0.5F;
       scan.push_back(point);
+      if (times_s != nullptr) times_s->push_back(time_s);
     }
   }
   return scan;
+}
+
+/// The same of a LiDAR that stands.
+inline std::vector<LidarPoint> scanBlocks(const std::vector<Block>& blocks, const SensorModel& sensor,
+                                          const Eigen::Isometry3d& T_ground_lidar, unsigned seed) {
+  return scanBlocksInMotion(
+      blocks, sensor, [&](double) { return T_ground_lidar; }, 0.0, seed);
 }
 
 /// A drive and its scans.
@@ -78,6 +93,7 @@ struct SyntheticDrive {
   std::vector<double> stamps_s;
   std::vector<Eigen::Isometry3d> T_map_lidar;  ///< the map is the frame of the first scan
   std::vector<std::vector<LidarPoint>> scans;
+  std::vector<std::vector<double>> times_s;  ///< of the points, from the stamp; empty: all at once
 };
 
 /// A drive down the street on a circle of 50 m radius, 5 m/s and ten scans a second.
@@ -96,6 +112,32 @@ inline SyntheticDrive driveDownTheStreet(const SensorModel& sensor, int scan_cou
     drive.stamps_s.push_back(0.1 * i);
     drive.T_map_lidar.push_back(pose(0.0).inverse() * pose(0.1 * i));
     drive.scans.push_back(scanBlocks(street, sensor, pose(0.1 * i), static_cast<unsigned>(i)));
+  }
+  return drive;
+}
+
+/// A faster drive down the same street, a bend of 60 m radius, of a LiDAR that turns ten times a second.
+/// @param signed_period_s  as scanBlocksInMotion(): 0.1, -0.1, or 0 for scans without skew
+inline SyntheticDrive raceDownTheStreet(const SensorModel& sensor, int scan_count, double speed_mps,
+                                        double signed_period_s, unsigned seed) {
+  constexpr double kRadius_m = 60.0, kSensorHeight_m = 1.73;
+  const auto pose = [&](double at_s) {
+    const double yaw = speed_mps * at_s / kRadius_m;
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() << -20.0 + kRadius_m * std::sin(yaw), -3.0 + kRadius_m * (1.0 - std::cos(yaw)), kSensorHeight_m;
+    T.linear() = rotationFromVector({0.0, 0.0, yaw});
+    return T;
+  };
+  const std::vector<Block> street = streetBlocks();
+  SyntheticDrive drive;
+  for (int i = 0; i < scan_count; ++i) {
+    const double stamp_s = 0.1 * i;
+    drive.stamps_s.push_back(stamp_s);
+    drive.T_map_lidar.push_back(pose(0.0).inverse() * pose(stamp_s));
+    drive.times_s.emplace_back();
+    drive.scans.push_back(scanBlocksInMotion(
+        street, sensor, [&](double time_s) { return pose(stamp_s + time_s); }, signed_period_s,
+        seed + static_cast<unsigned>(i), &drive.times_s.back()));
   }
   return drive;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saw_ndt/common/export.h"
+#include "saw_ndt/common/geometry.h"
 #include "saw_ndt/drives/scan_source.h"
 
 namespace saw_ndt {
@@ -51,6 +52,9 @@ class SAW_NDT_EXPORT KittiSequence {
   /// The stamp (s) of every scan; times.txt is read by the first call. Throws Error where it is missing or has too few
   /// lines.
   const std::vector<double>& stamps() const;
+  /// How long a scan takes (s): the median of the times from one stamp to the next; a tenth of a second where there are
+  /// no two that grow. Throws as stamps().
+  double scanPeriod() const;
   /// Reads `Tr` of calib.txt; see readKittiCalibration().
   Eigen::Isometry3d T_camera_lidar() const;
 
@@ -62,6 +66,9 @@ class SAW_NDT_EXPORT KittiSequence {
   /// is the LiDAR frame of the drive's first scan. Throws Error where poses or calibration are missing, too few, or no
   /// rigid transforms.
   const std::vector<Eigen::Isometry3d>& posesLidar() const;
+
+  /// posesLidar() with stamps(), and throws as these. Those whose stamp does not grow are left out.
+  std::vector<StampedPose> trajectory() const;
 
   /// The given scans one after the other, with stamps where there is times.txt and reference poses where there are any.
   /// Throws Error as stamps() and posesLidar(), where their files exist. The sequence must live as long as the source.

@@ -23,6 +23,9 @@ namespace saw_ndt {
 namespace internal {
 class PoseFinder;
 struct PoseAttempt;
+struct MotionPrior;
+struct RefinedMotion;
+struct ScanMotion;
 }  // namespace internal
 
 struct SAW_NDT_EXPORT LocalizerOptions {
@@ -30,6 +33,12 @@ struct SAW_NDT_EXPORT LocalizerOptions {
   SegmentationOptions segmentation;
   double source_voxel_size_m = 0.2;  ///< edge of the voxels that thin a scan; 0 keeps every point
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();  ///< mounting of the LiDAR on the vehicle
+  /// Where scans are skewed by the motion of the LiDAR: how points are told when they were measured. They are
+  /// registered as seen at the stamp, by the motion of ScanPriors where that is given, else by the predicted one, and
+  /// again by that with which they fit the map best, if it moves points by a centimetre more. Where no motion is known
+  /// yet, speeds straight on are tried out. With an aligner of one's own, the predicted motion is all that is taken.
+  MotionCompensation motion_compensation = MotionCompensation::OFF;
+  double scan_period_s = 0.0;  ///< how long a turn of the LiDAR takes, where azimuths tell times; 0: from the stamps
   MotionPredictionOptions prediction;
   AlignmentOptions alignment;  ///< what LocalizationMethod has as well is the method's
   AcceptanceOptions acceptance;
@@ -77,6 +86,8 @@ struct LocalizationResult {
   Matrix6d covariance = Matrix6d::Zero();
   /// Along which the scan does not hold the pose, as AlignmentResult::free_directions; none where it was rejected.
   PoseDirections free_directions = PoseDirections(6, 0);
+  /// The points told when they were measured, and what the motion of the LiDAR does to them was taken out.
+  bool motion_compensated = false;
   PoseCorrection correction;  ///< of the prediction by registration
   SearchExtent search = SearchExtent::NONE;
   std::size_t source_points = 0;
@@ -140,16 +151,28 @@ class SAW_NDT_EXPORT Localizer {
   MotionPrediction prediction_;
   UncertainPose predictedPose(double stamp_s, const std::optional<MeasuredPosition>& position,
                               bool& without_track) const;
+  PoseExpectation expectation(const UncertainPose& predicted, double stamp_s) const;
   internal::PoseAttempt find(const SourcePoints& source, const UncertainPose& predicted, double stamp_s);
   UncertainPose accept(const internal::PoseAttempt& found, double stamp_s,
                        const std::optional<MeasuredPosition>& position, bool without_track);
 
   internal::PoseAttempt searchEverywhere(const SourcePoints& source, double stamp_s, double elapsed_ms);
 
+  struct ScanInWork;
   struct OngoingSearch;
+  struct Moving;
+
+  static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options, const NdtTarget* target);
+  internal::PoseAttempt locate(const SourcePoints& source, ScanInWork& scan);
+  internal::PoseAttempt locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan);
+  std::optional<internal::RefinedMotion> refinedAtAnySpeed(const internal::PoseAttempt& found,
+                                                           const internal::MotionPrior& prior);
+  internal::PoseAttempt refined(const internal::PoseAttempt& found, const ScanPriors& priors, const ScanInWork& scan,
+                                std::optional<internal::ScanMotion>& motion);
 
   std::unique_ptr<internal::PoseFinder> finder_;
   std::unique_ptr<OngoingSearch> ongoing_search_;
+  std::unique_ptr<Moving> moving_;  // null: scans are taken as they are
 };
 
 }  // namespace saw_ndt

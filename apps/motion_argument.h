@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "app_options.h"
+#include "saw_ndt/drives/motion_trial.h"
+
+namespace saw_ndt {
+
+/// The option -motion-compensation of every app that puts scans of a moving LiDAR together.
+class MotionArgument {
+ public:
+  void addTo(AppOptions& app);
+
+  /// What the command line states or, for auto, what a trial finds. Where compensation is switched off and scans have
+  /// times, the trial is made all the same, and a warning says if they look skewed.
+  MotionTrial decide(const AppOptions& app, ScanSource& scans, const std::function<MotionTrial()>& trial) const;
+
+ private:
+  std::optional<MotionCompensation> stated() const;
+
+  std::string text_ = "auto";
+};
+
+}  // namespace saw_ndt
