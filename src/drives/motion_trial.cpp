@@ -8,6 +8,7 @@
 
 #include "drives/reference_motion.h"
 #include "localization/motion_compensation.h"
+#include "localization/preparation_options.h"
 #include "localization/source_voxel_filter.h"
 #include "saw_ndt/map/weighted_map_builder.h"
 #include "saw_ndt/registration/ndt_aligner.h"
@@ -138,6 +139,57 @@ void start(Localizer& localizer, const std::optional<Eigen::Isometry3d>& T_map_b
   }
 }
 
+// A scan that was found as it is: where, and how the LiDAR moved from the scan before it to the one behind.
+struct LocatedScan {
+  std::size_t scan = 0;
+  Eigen::Isometry3d T_map_base;
+  BodyMotion lidar_motion;
+};
+
+// Skew moves poses of successive scans alike, so that it hardly changes the motion between them.
+std::vector<LocatedScan> locatedAsTheyAre(const NdtTarget& target, const LocalizerOptions& options,
+                                          const MovingScans& moving) {
+  Localizer localizer(target, options);
+  start(localizer, moving.T_map_base_initial);
+  std::vector<LocalizationResult> results;
+  for (const RecordedScan& scan : moving.scans) {
+    results.push_back(localizer.localize(viewOf(scan), scan.stamp_s, scan.priors));
+  }
+  std::vector<LocatedScan> located;
+  for (std::size_t i = 1; i + 1 < results.size(); ++i) {
+    const double duration_s = results[i + 1].stamp_s - results[i - 1].stamp_s;
+    if (!results[i - 1].accepted() || !results[i].accepted() || !results[i + 1].accepted() || duration_s <= 0.0)
+      continue;
+    const Eigen::Isometry3d T_before = results[i - 1].T_map_base * options.T_base_lidar;
+    const Eigen::Isometry3d T_behind = results[i + 1].T_map_base * options.T_base_lidar;
+    located.push_back({i, results[i].T_map_base, motionBetween(T_before.inverse() * T_behind, duration_s)});
+  }
+  return located;
+}
+
+// Fits of such scans once they are compensated by their motion, each found again from where it was.
+std::vector<double> fitsOfCompensated(const NdtTarget& target, LocalizerOptions options,
+                                      const std::vector<RecordedScan>& scans, const std::vector<LocatedScan>& located,
+                                      MotionCompensation compensation) {
+  options.search = false;
+  const AlignmentOptions alignment = Localizer(target, options).options().alignment;
+  ScanPreparation preparation(preparationOptions(options));
+  NdtAligner aligner;
+  ScanPeriod period(options.scan_period_s);
+  for (const RecordedScan& scan : scans) period.add(scan.stamp_s);
+  std::vector<double> fits;
+  for (const LocatedScan& at : located) {
+    const RecordedScan& scan = scans[at.scan];
+    ScanPoints compensated = scan;
+    if (compensation != MotionCompensation::OFF) {
+      compensateScan(viewOf(scan), compensation, {scan.stamp_s, period.seconds()}, ScanMotion::even(at.lidar_motion),
+                     compensated.points);
+    }
+    fits.push_back(fitOf(aligner.align(target, preparation.prepare(viewOf(compensated)), at.T_map_base, alignment)));
+  }
+  return fits;
+}
+
 // A scan with its labels and the motion during it.
 struct ReferencedScan {
   RecordedScan scan;
@@ -211,6 +263,13 @@ MotionTrial tryMotionCompensation(const NdtTarget& target, const LocalizerOption
   std::vector<Candidate> candidates = candidatesFor(moving.scans);
   // Those that go wrong need not be looked for.
   with.search = options.search && !moving.was_found;
+  const std::vector<LocatedScan> located = locatedAsTheyAre(target, with, moving);
+  if (located.size() >= kLeastScans) {
+    for (Candidate& candidate : candidates) {
+      candidate.fits = fitsOfCompensated(target, with, moving.scans, located, candidate.compensation);
+    }
+    return decide(candidates);
+  }
   for (Candidate& candidate : candidates) {
     with.motion_compensation = candidate.compensation;
     Localizer localizer(target, with);

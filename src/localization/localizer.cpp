@@ -13,6 +13,7 @@
 #include "localization/motion_knowledge.h"
 #include "localization/motion_refinement.h"
 #include "localization/pose_finder.h"
+#include "localization/preparation_options.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
@@ -20,9 +21,7 @@ namespace saw_ndt {
 
 using namespace internal;
 
-namespace {
-
-ScanPreparationOptions preparationOptions(const LocalizerOptions& options) {
+ScanPreparationOptions internal::preparationOptions(const LocalizerOptions& options) {
   ScanPreparationOptions preparation;
   preparation.segment = options.method.segment;
   preparation.segmentation = options.segmentation;
@@ -34,6 +33,8 @@ ScanPreparationOptions preparationOptions(const LocalizerOptions& options) {
   preparation.threads = options.alignment.threads;
   return preparation;
 }
+
+namespace {
 
 LocalizerOptions withMethod(LocalizerOptions options) {
   options.check();
@@ -274,13 +275,14 @@ PoseAttempt Localizer::locate(const SourcePoints& source, ScanInWork& scan) {
 }
 
 // A vehicle of which no speed is known yet may have any straight on: the one at which the scan fits the map best.
-std::optional<RefinedMotion> Localizer::refinedAtAnySpeed(const PoseAttempt& found, const MotionPrior& prior) {
+std::optional<RefinedMotion> Localizer::refinedAtAnySpeed(const Eigen::Isometry3d& T_map_base_start,
+                                                          const MotionPrior& prior) {
   constexpr double kFastest_mps = 40.0;
   constexpr double kStep_mps = 10.0;
   Moving& moving = *moving_;
   std::optional<RefinedMotion> best;
   double best_fit = 0.0;
-  Eigen::Isometry3d start = found.alignment.T_map_source;
+  Eigen::Isometry3d start = T_map_base_start;
   for (double speed_mps = 0.0; speed_mps <= kFastest_mps; speed_mps += kStep_mps) {
     const ScanMotion motion = ScanMotion::even({speed_mps * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero()});
     const AlignmentResult alignment = finder_->align(moving.source.compensatedBy(motion), start);
@@ -306,8 +308,11 @@ PoseAttempt Localizer::refined(const PoseAttempt& found, const ScanPriors& prior
   const MotionPrior prior = moving.motion.prior(track, priors, is_elsewhere);
   const bool is_unknown = !prior.before && (!motion || is_elsewhere);
   const ScanMotion known = motion.value_or(ScanMotion());
+  // A skewed scan may have led away from the pose that was expected.
+  const bool is_misled = !found.accepted() && PoseFinder::isInReach(scan.predicted.covariance);
+  const Eigen::Isometry3d& T_map_base_start = is_misled ? scan.predicted.T_map_base : found.alignment.T_map_source;
   const std::optional<RefinedMotion> refined =
-      is_unknown ? refinedAtAnySpeed(found, prior)
+      is_unknown ? refinedAtAnySpeed(T_map_base_start, prior)
                  : moving.refinement->refine(moving.source, found.alignment.T_map_source, known, prior);
   const bool is_other = refined && refined->significant &&
                         shiftBetween(refined->motion, known, moving.source.reach_s()) >= kNegligibleShift_m;
@@ -328,7 +333,9 @@ PoseAttempt Localizer::locateMoving(const SourcePoints& measured, const ScanPrio
   if (!moving.source.hasTimes()) return locate(measured, scan);
   std::optional<ScanMotion> motion = moving.motion.expected(prediction_.state(), priors);
   PoseAttempt found = locate(moving.source.compensatedBy(motion.value_or(ScanMotion())), scan);
-  if (found.alignment.converged() && moving.refinement) found = refined(found, priors, scan, motion);
+  // As it is, a scan at a speed that is not known may lie nowhere.
+  const bool is_anywhere = !motion && PoseFinder::isInReach(scan.predicted.covariance);
+  if ((found.alignment.converged() || is_anywhere) && moving.refinement) found = refined(found, priors, scan, motion);
   if (found.accepted()) moving.motion.learn(motion.value_or(ScanMotion()));
   return found;
 }

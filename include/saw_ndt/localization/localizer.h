@@ -165,7 +165,7 @@ class SAW_NDT_EXPORT Localizer {
   static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options, const NdtTarget* target);
   internal::PoseAttempt locate(const SourcePoints& source, ScanInWork& scan);
   internal::PoseAttempt locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan);
-  std::optional<internal::RefinedMotion> refinedAtAnySpeed(const internal::PoseAttempt& found,
+  std::optional<internal::RefinedMotion> refinedAtAnySpeed(const Eigen::Isometry3d& T_map_base_start,
                                                            const internal::MotionPrior& prior);
   internal::PoseAttempt refined(const internal::PoseAttempt& found, const ScanPriors& priors, const ScanInWork& scan,
                                 std::optional<internal::ScanMotion>& motion);
