@@ -124,7 +124,7 @@ void GroundDetection::doubtFeet(const PixelImage& image, const SensorModel& sens
 
 void GroundDetection::takeBackDoubts(const PixelImage& image, const SensorModel& sensor,
                                      std::vector<StructuralLabel>& labels) {
-  constexpr double kFarApart_deg = 0.6;
+  constexpr double kFarApart_deg = 0.65;
   const auto is_far_below = [&](int row) {
     return sensor.elevations_deg[row - 1] - sensor.elevations_deg[row] >= kFarApart_deg;
   };

@@ -18,10 +18,12 @@ struct MotionTrial {
   std::string reason;                                         ///< in words, with the figures
 };
 
-/// Localizes some scans in a map by each way of compensation: by the times of the points where they differ, else by the
+/// Aligns some scans to a map by each way of compensation: by the times of the points where they differ, else by the
 /// azimuth in both directions; and as they are. They are the first ones in which the vehicle moves points 20 m away by
-/// 0.2 m a turn, ten at most. A way is taken where likelihood times overlap (AlignmentResult's) is on average by 1 %
-/// and by three standard errors greater than that of every other, the scans as they are among them.
+/// 0.2 m a turn, ten at most; their motion is that between the poses of a localizer that takes them as they are. Where
+/// it finds fewer than four, each way has a localizer of its own. A way is taken where likelihood times overlap
+/// (AlignmentResult's) is on average by 1 % and by three standard errors greater than that of every other, the scans as
+/// they are among them.
 /// @param target   of the map, made with options.method.voxels
 /// @param options  of the localizer; its motion_compensation is not looked at
 /// @param T_map_base_initial  at the first scan; nothing: not known
