@@ -88,18 +88,16 @@ int ringCount(const ScanView& scan) {
 
 bool BeamGroups::areBeams() const {
   if (groups.size() < static_cast<std::size_t>(kLeastBeams)) return false;
-  // Groups of file order that hold several rings, as where most of a ring has no return.
-  constexpr double kGreatestSpread_deg = 1.5;
-  constexpr double kMostPointsSpread = 0.05;
   std::vector<double> spreads, elevations, gaps;
   double points = 0.0, points_spread = 0.0;
   for (const BeamGroup& group : groups) {
     points += static_cast<double>(group.points);
-    if (group.spread_deg > kGreatestSpread_deg) points_spread += static_cast<double>(group.points);
+    if (group.spread_deg > static_cast<double>(kGreatestSpreadOfRunDeg))
+      points_spread += static_cast<double>(group.points);
     spreads.push_back(group.spread_deg);
     elevations.push_back(group.elevation_deg);
   }
-  if (!numbered && points_spread > kMostPointsSpread * points) return false;
+  if (!numbered && points_spread > kMostPointsInSpreadRuns * points) return false;
   std::sort(elevations.begin(), elevations.end());
   for (std::size_t i = 1; i < elevations.size(); ++i) gaps.push_back(elevations[i] - elevations[i - 1]);
   return medianOf(spreads) < medianOf(gaps);

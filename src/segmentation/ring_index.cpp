@@ -18,11 +18,6 @@ constexpr float kGreatestMeanMisfitDeg = 1.5F;
 // How far beyond the outermost beams a point may lie, since calibration and motion compensation shift what is seen.
 constexpr double kElevationMarginDeg = 1.5;
 
-// A run of points that are farther than this from its median elevation holds several rings: where most of a ring has no
-// return, nothing tells where it ends. On KITTI none is above 0.5 degrees.
-constexpr float kGreatestSpreadDeg = 1.5F;
-constexpr double kMostPointsSpread = 0.05;
-
 constexpr std::size_t kSamplesOfRun = 32;
 constexpr std::size_t kSamplesOfScan = 2048;
 constexpr double kMostRings = 1024.0;
@@ -196,9 +191,9 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
     for (float& sample : samples_) sample = std::abs(sample - median);
     run_elevations_[run] = static_cast<float>(degreesFromRadians(std::asin(std::clamp(median, -1.0F, 1.0F))));
     run_spreads_[run] = static_cast<float>(degreesFromRadians(medianOf(samples_)));
-    if (run_spreads_[run] > kGreatestSpreadDeg) points_spread += end - runs_[run].begin;
+    if (run_spreads_[run] > kGreatestSpreadOfRunDeg) points_spread += end - runs_[run].begin;
   }
-  if (static_cast<double>(points_spread) > kMostPointsSpread * static_cast<double>(scan.size)) return false;
+  if (static_cast<double>(points_spread) > kMostPointsInSpreadRuns * static_cast<double>(scan.size)) return false;
 
   const bool rises = run_elevations_.front() < run_elevations_.back();
   if (rises) {

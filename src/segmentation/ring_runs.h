@@ -16,6 +16,12 @@ struct RowRun {
   std::int16_t row;
 };
 
+/// A run of points that are mostly farther than this from its median elevation (degrees) holds several rings: where
+/// most of a ring has no return, nothing tells where it ends. On KITTI none is above 0.5 degrees.
+constexpr float kGreatestSpreadOfRunDeg = 1.5F;
+/// The share of a scan's points in such runs from which its order tells nothing.
+constexpr double kMostPointsInSpreadRuns = 0.05;
+
 /// Finds the rings of a scan that lists one after the other, from azimuth 0 round to 0 again in either direction; their
 /// rows are left 0.
 /// @param columns  that the points were measured for
