@@ -61,7 +61,11 @@ ScanView compensated(const RecordedScan& scan, const DriveMapOptions& options, s
                                 *motion, moved)) {
     throw Error(scan.name, "", "its points have no times of measurement to take the motion out by");
   }
-  return viewOf(moved);
+  // Rings and rows are those of the scan.
+  ScanView view = viewOf(scan);
+  view.xyz = viewOf(moved).xyz;
+  view.stride = viewOf(moved).stride;
+  return view;
 }
 
 }  // namespace

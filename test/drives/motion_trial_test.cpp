@@ -124,6 +124,28 @@ TEST(CompensatedMap, WhatIsNotKnownIsAnError) {
   expectThrows<std::invalid_argument>([&] { options.check(); }, {"scan_period_s"});
 }
 
+// Rings that no sensor has are refused, so that it shows whether they are looked at.
+class ScansOfStrangeRings : public ScansInMemory {
+ public:
+  using ScansInMemory::ScansInMemory;
+  bool next(RecordedScan& scan) override {
+    if (!ScansInMemory::next(scan)) return false;
+    scan.rings.assign(scan.points.size(), 5000);
+    return true;
+  }
+};
+
+TEST(CompensatedMap, IsSegmentedByTheRingsOfItsScans) {
+  const SyntheticDrive drive = driveOf(20.0, 0.1, 1);
+  DriveMapOptions options = mapOptionsFor(drive);
+  for (const MotionCompensation compensation :
+       {MotionCompensation::OFF, MotionCompensation::FROM_AZIMUTH_COUNTERCLOCKWISE}) {
+    options.motion_compensation = compensation;
+    ScansOfStrangeRings scans(drive);
+    expectThrows<std::invalid_argument>([&] { buildDriveMap(scans, options); }, {"ring 5000"});
+  }
+}
+
 TEST(ReferenceMotion, LeadsFromPoseToPose) {
   const auto poseAt = [](double x) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
