@@ -21,8 +21,9 @@ constexpr char kDescription[] =
     "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
     "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
     "is printed too. A scan that is rejected gets the pose that was predicted for it, and none as long as nobody knows "
-    "where the vehicle is; where none is located the drive has failed. Give -sensor, -ground-rule and -slope-deg as "
-    "for saw_ndt_build_map. Where reference poses exist, that of the first scan is the initial pose, and all together "
+    "where the vehicle is; where none is located the drive has failed. The sensor must be alike that of the map; the "
+    "rule and slope of the ground are those of the map unless stated. Where reference poses exist, that of the first "
+    "scan is the initial pose, and all together "
     "they tell the errors. A vehicle that is lost is looked for, first around its prediction, "
     "then in all of the map.";
 
