@@ -61,11 +61,7 @@ ScanView compensated(const RecordedScan& scan, const DriveMapOptions& options, s
                                 *motion, moved)) {
     throw Error(scan.name, "", "its points have no times of measurement to take the motion out by");
   }
-  // Rings and rows are those of the scan.
-  ScanView view = viewOf(scan);
-  view.xyz = viewOf(moved).xyz;
-  view.stride = viewOf(moved).stride;
-  return view;
+  return viewOf(moved);
 }
 
 }  // namespace
