@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <stdexcept>
 
 #include "io/bin_scan.h"
 #include "saw_ndt/common/error.h"
@@ -22,43 +21,6 @@ namespace {
 
 constexpr char kTimesFile[] = "times.txt";
 
-class SelectedScans : public ScanSource {
- public:
-  SelectedScans(const KittiSequence& sequence, const std::vector<int>& numbers)
-      : sequence_(sequence), numbers_(numbers) {
-    has_stamps_ = fs::exists(sequence.folder() / kTimesFile);
-    if (has_stamps_) sequence.stamps();
-    if (sequence.hasPoses()) sequence.posesLidar();
-  }
-
-  bool next(RecordedScan& scan) override {
-    if (next_ == numbers_.size()) return false;
-    const int number = numbers_[next_++];
-    const auto place = static_cast<std::size_t>(number);
-    scan.number = number;
-    scan.name = sequence_.scanPath(number).filename().string();
-    scan.stamp_s = has_stamps_ ? sequence_.stamps()[place] : 0.0;
-    scan.T_map_lidar.reset();
-    if (sequence_.hasPoses()) scan.T_map_lidar = sequence_.posesLidar()[place];
-    scan.failure.clear();
-    try {
-      sequence_.readScan(number, scan);
-    } catch (const Error& error) {
-      static_cast<ScanPoints&>(scan) = ScanPoints();
-      scan.failure = error.what();
-    }
-    return true;
-  }
-
-  std::optional<std::size_t> scanCount() const override { return numbers_.size(); }
-
- private:
-  const KittiSequence& sequence_;
-  std::vector<int> numbers_;
-  std::size_t next_ = 0;
-  bool has_stamps_ = false;
-};
-
 fs::path withoutTrailingSlash(const fs::path& folder) { return folder.has_filename() ? folder : folder.parent_path(); }
 
 /// Where the poses of a sequence lie, its path being free of links to parents.
@@ -69,7 +31,8 @@ fs::path posesBeside(const fs::path& sequence) {
 }  // namespace
 
 KittiSequence::KittiSequence(const fs::path& folder, const fs::path& poses_file, int bin_fields)
-    : folder_(folder), bin_fields_(bin_fields) {
+    : Recording(folder, withoutTrailingSlash(fs::absolute(folder).lexically_normal()).filename().string()),
+      bin_fields_(bin_fields) {
   requireBinFields(bin_fields);
   const fs::path velodyne = folder / "velodyne";
   for (const fs::path& needed : {folder, velodyne}) {
@@ -88,7 +51,6 @@ KittiSequence::KittiSequence(const fs::path& folder, const fs::path& poses_file,
 
   const fs::path as_given = withoutTrailingSlash(fs::absolute(folder).lexically_normal());
   const fs::path as_is = fs::weakly_canonical(as_given);
-  name_ = as_given.filename().string();
   if (!poses_file.empty()) {
     if (!fs::exists(poses_file)) throw Error(poses_file.string(), "", std::strerror(ENOENT));
     poses_file_ = poses_file;
@@ -102,17 +64,13 @@ KittiSequence::KittiSequence(const fs::path& folder, const fs::path& poses_file,
   }
 }
 
-const KittiSequence::Scan& KittiSequence::scanAt(int scan) const {
-  if (scan < 0 || scan >= scanCount()) {
-    throw std::out_of_range("scan " + std::to_string(scan) + ": " + folder_.string() + " has scans 0 to " +
-                            std::to_string(scanCount() - 1));
-  }
-  return scans_[static_cast<std::size_t>(scan)];
-}
+const KittiSequence::Scan& KittiSequence::scanAt(int scan) const { return scans_[requireScan(scan)]; }
 
-fs::path KittiSequence::scanPath(int scan) const { return folder_ / "velodyne" / (scanAt(scan).stem + ".bin"); }
+fs::path KittiSequence::scanPath(int scan) const { return folder() / "velodyne" / (scanAt(scan).stem + ".bin"); }
 
-fs::path KittiSequence::labelPath(int scan) const { return folder_ / "labels" / (scanAt(scan).stem + ".label"); }
+std::string KittiSequence::scanName(int scan) const { return scanAt(scan).stem + ".bin"; }
+
+fs::path KittiSequence::labelPath(int scan) const { return folder() / "labels" / (scanAt(scan).stem + ".label"); }
 
 std::vector<LidarPoint> KittiSequence::readScan(int scan) const {
   ScanPoints points;
@@ -158,21 +116,25 @@ std::vector<std::size_t> KittiSequence::linesOfScans(const fs::path& path, const
   return lines;
 }
 
+bool KittiSequence::hasStamps() const { return fs::exists(folder() / kTimesFile); }
+
+std::string KittiSequence::stampsPlace() const { return (folder() / kTimesFile).string(); }
+
 const std::vector<double>& KittiSequence::stamps() const {
   if (!stamps_s_.empty()) return stamps_s_;
-  const fs::path path = folder_ / kTimesFile;
+  const fs::path path = folder() / kTimesFile;
   const std::vector<double> all_s = readStamps(path);
   for (const std::size_t line : linesOfScans(path, "times", all_s.size())) stamps_s_.push_back(all_s[line]);
   return stamps_s_;
 }
 
-Eigen::Isometry3d KittiSequence::T_camera_lidar() const { return readKittiCalibration(folder_ / "calib.txt"); }
+Eigen::Isometry3d KittiSequence::T_camera_lidar() const { return readKittiCalibration(folder() / "calib.txt"); }
 
 const std::vector<Eigen::Isometry3d>& KittiSequence::posesLidar() const {
   if (!T_map_lidar_.empty()) return T_map_lidar_;
   if (!hasPoses()) {
-    throw Error((folder_ / "poses.txt").string(), "",
-                "no poses: neither this file nor ../../poses/" + name_ + ".txt exists");
+    throw Error((folder() / "poses.txt").string(), "",
+                "no poses: neither this file nor ../../poses/" + name() + ".txt exists");
   }
   const std::vector<Eigen::Isometry3d> camera_poses = readKittiTrajectory(poses_file_);
   const std::vector<std::size_t> lines = linesOfScans(poses_file_, "poses", camera_poses.size());
@@ -181,29 +143,8 @@ const std::vector<Eigen::Isometry3d>& KittiSequence::posesLidar() const {
   return T_map_lidar_;
 }
 
-double KittiSequence::scanPeriod() const {
-  std::vector<double> periods_s;
-  const std::vector<double>& stamps_s = stamps();
-  for (std::size_t i = 1; i < stamps_s.size(); ++i) {
-    if (stamps_s[i] > stamps_s[i - 1]) periods_s.push_back(stamps_s[i] - stamps_s[i - 1]);
-  }
-  if (periods_s.empty()) return kNominalScanPeriod_s;
-  const auto middle = periods_s.begin() + static_cast<std::ptrdiff_t>(periods_s.size() / 2);
-  std::nth_element(periods_s.begin(), middle, periods_s.end());
-  return *middle;
-}
-
-std::vector<StampedPose> KittiSequence::trajectory() const {
-  std::vector<StampedPose> result;
-  const std::vector<Eigen::Isometry3d>& T_map_lidar = posesLidar();
-  for (std::size_t i = 0; i < stamps().size(); ++i) {
-    if (result.empty() || stamps()[i] > result.back().stamp_s) result.push_back({stamps()[i], T_map_lidar[i]});
-  }
-  return result;
-}
-
-std::unique_ptr<ScanSource> KittiSequence::scans(const std::vector<int>& numbers) const {
-  return std::make_unique<SelectedScans>(*this, numbers);
+std::optional<Eigen::Isometry3d> KittiSequence::referencePose(int scan) const {
+  return posesLidar()[requireScan(scan)];
 }
 
 }  // namespace saw_ndt

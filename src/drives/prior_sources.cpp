@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/pose_interpolation.h"
 #include "io/number_lines.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/trajectory.h"
@@ -151,9 +152,7 @@ class OdometrySource : public PriorSource {
     const double share = (stamp_s - a.stamp_s) / interval_s;
     OdometryPose pose;
     pose.stamp_s = stamp_s;
-    pose.T.translation() = a.T.translation() + share * (b.T.translation() - a.T.translation());
-    pose.T.linear() =
-        Eigen::Quaterniond(a.T.linear()).slerp(share, Eigen::Quaterniond(b.T.linear())).toRotationMatrix();
+    pose.T = interpolatedPose(a.T, b.T, share);
     pose.sigma_m = a.sigma_m + share * (b.sigma_m - a.sigma_m);
     pose.sigma_deg = a.sigma_deg + share * (b.sigma_deg - a.sigma_deg);
     return pose;

@@ -3,13 +3,13 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/common/geometry.h"
-#include "saw_ndt/drives/scan_source.h"
+#include "saw_ndt/drives/recording.h"
 
 namespace saw_ndt {
 
@@ -21,7 +21,7 @@ namespace saw_ndt {
 /// a scan has the line of its file's number, from 0. Only the list of scans is read at once; each other file is read
 /// when asked for, so that a drive without calibration or poses can still be used for what does not need them. Not to
 /// be shared by threads.
-class SAW_NDT_EXPORT KittiSequence {
+class SAW_NDT_EXPORT KittiSequence : public Recording {
  public:
   /// @param folder      the sequence
   /// @param poses_file  its poses; empty: `folder/poses.txt`, then `folder/../../poses/<name>.txt`, of the path as
@@ -32,10 +32,9 @@ class SAW_NDT_EXPORT KittiSequence {
   explicit KittiSequence(const std::filesystem::path& folder, const std::filesystem::path& poses_file = {},
                          int bin_fields = 0);
 
-  /// The folder's own name, such as "00".
-  const std::string& name() const { return name_; }
-  const std::filesystem::path& folder() const { return folder_; }
-  int scanCount() const { return static_cast<int>(scans_.size()); }
+  const std::filesystem::path& folder() const { return path(); }
+  int scanCount() const override { return static_cast<int>(scans_.size()); }
+  std::string scanName(int scan) const override;
 
   /// The file of a scan. Here and below std::out_of_range is thrown unless 0 <= scan < scanCount().
   std::filesystem::path scanPath(int scan) const;
@@ -44,22 +43,22 @@ class SAW_NDT_EXPORT KittiSequence {
 
   /// Reads the points of a scan; see readScanPoints().
   std::vector<LidarPoint> readScan(int scan) const;
-  /// Reads a scan with the rings and times of its points, into memory that `points` may bring along.
-  void readScan(int scan, ScanPoints& points) const;
+  void readScan(int scan, ScanPoints& points) const override;
   /// Reads the class of each point of a scan; an Error where their number differs from the scan's points.
   std::vector<std::uint16_t> readLabels(int scan) const;
 
+  /// Whether there is times.txt.
+  bool hasStamps() const override;
   /// The stamp (s) of every scan; times.txt is read by the first call. Throws Error where it is missing or has too few
   /// lines.
-  const std::vector<double>& stamps() const;
-  /// How long a scan takes (s): the median of the times from one stamp to the next; a tenth of a second where there are
-  /// no two that grow. Throws as stamps().
-  double scanPeriod() const;
+  const std::vector<double>& stamps() const override;
+  std::string stampsPlace() const override;
   /// Reads `Tr` of calib.txt; see readKittiCalibration().
   Eigen::Isometry3d T_camera_lidar() const;
+  std::optional<Eigen::Isometry3d> cameraCalibration() const override { return T_camera_lidar(); }
 
   /// Whether there is a poses file.
-  bool hasPoses() const { return !poses_file_.empty(); }
+  bool hasPoses() const override { return !poses_file_.empty(); }
   /// The poses file; empty where there is none.
   const std::filesystem::path& posesFile() const { return poses_file_; }
   /// The LiDAR pose of every scan, read by the first call: T_map_lidar = Tr^-1 P Tr with P the camera's pose; the map
@@ -67,12 +66,8 @@ class SAW_NDT_EXPORT KittiSequence {
   /// rigid transforms.
   const std::vector<Eigen::Isometry3d>& posesLidar() const;
 
-  /// posesLidar() with stamps(), and throws as these. Those whose stamp does not grow are left out.
-  std::vector<StampedPose> trajectory() const;
-
-  /// The given scans one after the other, with stamps where there is times.txt and reference poses where there are any.
-  /// Throws Error as stamps() and posesLidar(), where their files exist. The sequence must live as long as the source.
-  std::unique_ptr<ScanSource> scans(const std::vector<int>& numbers) const;
+  /// One of posesLidar().
+  std::optional<Eigen::Isometry3d> referencePose(int scan) const override;
 
  private:
   struct Scan {
@@ -85,9 +80,7 @@ class SAW_NDT_EXPORT KittiSequence {
   std::vector<std::size_t> linesOfScans(const std::filesystem::path& path, const std::string& what,
                                         std::size_t line_count) const;
 
-  std::filesystem::path folder_;
   std::filesystem::path poses_file_;
-  std::string name_;
   std::vector<Scan> scans_;
   mutable int bin_fields_;                              // 0: not told yet
   mutable std::vector<double> stamps_s_;                // empty: not read yet
