@@ -1,5 +1,7 @@
 #include "motion_argument.h"
 
+#include <algorithm>
+
 namespace saw_ndt {
 namespace {
 
@@ -39,6 +41,14 @@ MotionTrial MotionArgument::decide(const AppOptions& app, ScanSource& scans,
     }
   }
   return {*value, "as stated"};
+}
+
+MotionTrial MotionArgument::decideLive(const std::vector<ScanPoints>& first) const {
+  if (const std::optional<MotionCompensation> value = stated()) return {*value, "as stated"};
+  const bool have_times =
+      std::any_of(first.begin(), first.end(), [](const ScanPoints& scan) { return !scan.times_s.empty(); });
+  if (have_times) return {MotionCompensation::FROM_TIMES, "scans come from the sensor, with times of their points"};
+  return {MotionCompensation::OFF, "scans come from a live source, and their points have no times"};
 }
 
 }  // namespace saw_ndt

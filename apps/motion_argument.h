@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app_options.h"
 #include "saw_ndt/drives/motion_trial.h"
@@ -17,6 +18,9 @@ class MotionArgument {
   /// What the command line states or, for auto, what a trial finds. Where compensation is switched off and scans have
   /// times, the trial is made all the same, and a warning says if they look skewed.
   MotionTrial decide(const AppOptions& app, ScanSource& scans, const std::function<MotionTrial()>& trial) const;
+  /// The same for a source that cannot be read twice: for auto, by the times of its first scans' points where they have
+  /// such, for a live sensor's scans are not compensated elsewhere.
+  MotionTrial decideLive(const std::vector<ScanPoints>& first) const;
 
  private:
   std::optional<MotionCompensation> stated() const;

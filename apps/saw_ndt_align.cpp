@@ -180,8 +180,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   saw_ndt::BinFieldsArgument bin_fields;
   saw_ndt::AppOptions app("saw_ndt_align", kDescription);
-  app.addPositional("SOURCE", &arguments.source_file, "cloud to move, .pcd or .bin");
-  app.addPositional("TARGET", &arguments.target_file, "cloud to move it onto, .pcd or .bin");
+  app.addPositional("SOURCE", &arguments.source_file, "cloud to move, .pcd, .ply or .bin");
+  app.addPositional("TARGET", &arguments.target_file, "cloud to move it onto, .pcd, .ply or .bin");
   app.addPositional("OUT.pcd", &arguments.output_file, "SOURCE in the frame of TARGET, to write", true);
   app.addOption("guess", &arguments.guess, saw_ndt::kPosePlaceholder, "transform to start from, metres and degrees");
   app.addFlag("global", &arguments.global,

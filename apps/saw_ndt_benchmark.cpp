@@ -1,9 +1,9 @@
 #include <iostream>
 
 #include "app_options.h"
-#include "bin_fields_argument.h"
 #include "io/staged_output.h"
 #include "output_folder.h"
+#include "recording_argument.h"
 #include "report/benchmark_output.h"
 #include "report/benchmark_report.h"
 #include "saw_ndt/drives/scan_selection.h"
@@ -32,15 +32,16 @@ std::vector<MapDrive> drivesOf(const std::string& word, bool other_given) {
 }
 
 std::vector<saw_ndt::BenchmarkDrive> openDrives(const std::vector<std::string>& folders,
-                                                const std::vector<std::string>& map_folders, int bin_fields) {
+                                                const std::vector<std::string>& map_folders,
+                                                const saw_ndt::RecordingArgument& recordings) {
   if (!map_folders.empty() && map_folders.size() != folders.size()) {
     throw saw_ndt::UsageError("option -map-from: " + std::to_string(map_folders.size()) + " drives, where " +
                               std::to_string(folders.size()) + " are to be localized: one for each is needed");
   }
   std::vector<saw_ndt::BenchmarkDrive> drives;
   for (std::size_t i = 0; i < folders.size(); ++i) {
-    drives.push_back({saw_ndt::KittiSequence(folders[i], {}, bin_fields), {}});
-    if (!map_folders.empty()) drives.back().other.emplace(map_folders[i], std::filesystem::path(), bin_fields);
+    drives.push_back({recordings.open(folders[i]), {}});
+    if (!map_folders.empty()) drives.back().other = recordings.open(map_folders[i]);
   }
   return drives;
 }
@@ -53,10 +54,10 @@ int main(int argc, char** argv) {
   bool with_paper = false;
   saw_ndt::BenchmarkOptions options;
   saw_ndt::SegmentationArguments segmentation;
-  saw_ndt::BinFieldsArgument bin_fields;
+  saw_ndt::RecordingArgument recordings;
   saw_ndt::AppOptions app("saw_ndt_benchmark", kDescription);
   app.addPositionalList("SEQUENCE", &folders,
-                        "folder in KITTI layout with poses: velodyne/*.bin, calib.txt, times.txt");
+                        std::string(saw_ndt::RecordingArgument::kKinds) + "; with reference poses");
   app.addOption("output", &out_dir, "DIR", "folder for the results, made where it is missing; must be given");
   app.addOption("methods", &options.methods, "NAME,...",
                 "methods to compare; pcl-ndt, PCL's own class, is another one and slow");
@@ -70,7 +71,7 @@ int main(int argc, char** argv) {
   app.addOption("skip", &options.skip_s, "SECONDS", "time at the start that the errors leave out; 0 for short drives");
   app.addOption("resolution", &options.resolution_m, "METRES", "edge of the voxels of the maps");
   app.addFlag("paper", &with_paper, "add the paper's Table I beside sequences named 00, 01 and 03");
-  bin_fields.addTo(app);
+  recordings.addTo(app, false);
   segmentation.addTo(app);
 
   return saw_ndt::runApp(argc, argv, app, [&] {
@@ -83,12 +84,12 @@ int main(int argc, char** argv) {
     options.localizer.alignment.threads = app.threads();
     const auto open = [&] {
       return saw_ndt::checkedUsage(
-          [&] { return saw_ndt::Benchmark(openDrives(folders, map_folders, bin_fields.value()), options); });
+          [&] { return saw_ndt::Benchmark(openDrives(folders, map_folders, recordings), options); });
     };
     open();  // what is wrong with the command line is said before scans are read
-    const saw_ndt::KittiSequence first(folders.front(), {}, bin_fields.value());
+    const std::unique_ptr<saw_ndt::Recording> first = recordings.open(folders.front());
     options.localizer.segmentation = segmentation.learnedFrom(
-        saw_ndt::firstScans(*first.scans(saw_ndt::parseScanSelection(options.scans, first.scanCount()))));
+        saw_ndt::firstScans(*first->scans(saw_ndt::parseScanSelection(options.scans, first->scanCount()))));
     const saw_ndt::Benchmark benchmark = open();
     const saw_ndt::RunRecord record = saw_ndt::recordRun({argv, argv + argc}, app.threads());
 

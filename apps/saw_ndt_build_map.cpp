@@ -1,13 +1,12 @@
-#include <filesystem>
 #include <iostream>
 
 #include "app_options.h"
-#include "bin_fields_argument.h"
 #include "common/atomic_output.h"
 #include "motion_argument.h"
 #include "progress_bar.h"
+#include "recording_argument.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/drive_map.h"
-#include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "segmentation_options.h"
 
@@ -21,20 +20,20 @@ constexpr char kDescription[] =
 
 // Sets how motion is taken out of the scans, and says why. Without stamps none is known.
 std::string setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt::MotionArgument& argument,
-                                  const saw_ndt::KittiSequence& sequence, const std::vector<int>& selected,
+                                  const saw_ndt::Recording& recording, const std::vector<int>& selected,
                                   saw_ndt::DriveMapOptions& options) {
-  const saw_ndt::MotionTrial motion = argument.decide(app, *sequence.scans(selected), [&] {
-    if (!std::filesystem::exists(sequence.folder() / "times.txt")) {
-      return saw_ndt::MotionTrial{saw_ndt::MotionCompensation::OFF, "there is no times.txt"};
+  const saw_ndt::MotionTrial motion = argument.decide(app, *recording.scans(selected), [&] {
+    if (!recording.hasStamps()) {
+      return saw_ndt::MotionTrial{saw_ndt::MotionCompensation::OFF, "scans have no stamps"};
     }
-    options.scan_period_s = sequence.scanPeriod();
-    options.trajectory = sequence.trajectory();
-    return saw_ndt::tryMotionCompensation(options, *sequence.scans(selected));
+    options.scan_period_s = recording.scanPeriod();
+    options.trajectory = recording.trajectory();
+    return saw_ndt::tryMotionCompensation(options, *recording.scans(selected));
   });
   options.motion_compensation = motion.compensation;
   if (motion.compensation != saw_ndt::MotionCompensation::OFF) {
-    options.scan_period_s = sequence.scanPeriod();
-    options.trajectory = sequence.trajectory();
+    options.scan_period_s = recording.scanPeriod();
+    options.trajectory = recording.trajectory();
   }
   return std::string("motion compensation ") + saw_ndt::toString(motion.compensation) + ": " + motion.reason;
 }
@@ -42,43 +41,44 @@ std::string setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt:
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string sequence_folder, map_file, poses_file, scans = ":";
+  std::string sequence, map_file, scans = ":";
   bool classical = false, strict = false;
   saw_ndt::DriveMapOptions options;
   saw_ndt::SegmentationArguments segmentation;
-  saw_ndt::BinFieldsArgument bin_fields;
+  saw_ndt::RecordingArgument recording_argument;
   saw_ndt::MotionArgument motion;
   saw_ndt::AppOptions app("saw_ndt_build_map", kDescription);
-  app.addPositional("SEQUENCE", &sequence_folder, "folder in KITTI layout: velodyne/*.bin, calib.txt");
+  app.addPositional("SEQUENCE", &sequence, saw_ndt::RecordingArgument::kKinds);
   app.addPositional("MAP", &map_file, "map file to write");
   app.addOption("resolution", &options.resolution_m, "METRES", "edge of the smallest voxels that methods can match");
   app.addOption("scans", &scans, "SLICE", "scans to use, first:last:step as in Python: `0:70:2`, or all with `:`");
-  app.addOption("poses", &poses_file, "FILE",
-                "reference poses, KITTI format (default: SEQUENCE/poses.txt, then SEQUENCE/../../poses/<name>.txt)");
   app.addFlag("classical", &classical, "do not segment: raw points without labels");
   app.addFlag("strict", &strict, "a scan that cannot be read is an error, and nothing is written");
   motion.addTo(app);
-  bin_fields.addTo(app);
+  recording_argument.addTo(app);
   segmentation.addTo(app);
 
   return saw_ndt::runApp(argc, argv, app, [&] {
-    const saw_ndt::KittiSequence sequence(sequence_folder, poses_file, bin_fields.value());
+    const std::unique_ptr<saw_ndt::Recording> recording = recording_argument.open(sequence);
     const std::vector<int> selected =
-        saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, sequence.scanCount()); });
+        saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, recording->scanCount()); });
     options.threads = app.threads();
     options.segmentation = segmentation.stated();
     saw_ndt::checkedUsage([&] { return saw_ndt::WeightedMapBuilder(options.resolution_m); });
 
-    sequence.posesLidar();
+    recording->referencePose(selected.front());
+    if (!recording->hasPoses()) {
+      throw saw_ndt::Error(sequence, "", "has no reference poses, which a map is built by; -poses FILE gives them");
+    }
     // Found out before the long work: whether the map can be written. This leaves nothing behind.
     { const saw_ndt::internal::AtomicOutput probe(map_file); }
     if (classical) {
       options.segmentation.reset();
     } else {
-      options.segmentation = segmentation.learnedFrom(saw_ndt::firstScans(*sequence.scans(selected)));
+      options.segmentation = segmentation.learnedFrom(saw_ndt::firstScans(*recording->scans(selected)));
     }
 
-    const std::string motion_text = setMotionCompensation(app, motion, sequence, selected, options);
+    const std::string motion_text = setMotionCompensation(app, motion, *recording, selected, options);
     saw_ndt::ProgressBar progress(selected.size());
     std::vector<std::string> left_out;
     if (!strict) {
@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
       };
     }
     const saw_ndt::WeightedVoxelMap map =
-        saw_ndt::buildDriveMap(*sequence.scans(selected), options, [&] { progress.step(); }).build();
+        saw_ndt::buildDriveMap(*recording->scans(selected), options, [&] { progress.step(); }).build();
     for (const std::string& failure : left_out) std::cerr << app.name() << ": " << failure << ": left out\n";
     map.save(map_file);
     std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution()

@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::BinFieldsArgument bin_fields;
   saw_ndt::AppOptions app("saw_ndt_segment", kDescription);
-  app.addPositional("SCAN", &scan_file, "one scan in the LiDAR frame, .bin (KITTI) or .pcd");
+  app.addPositional("SCAN", &scan_file, "one scan in the LiDAR frame, .bin (KITTI), .pcd or .ply");
   app.addPositional("OUT.pcd", &pcd_file, "labelled cloud to write");
   app.addOption("labels", &label_file, "FILE.label", "SemanticKITTI classes of the scan's points");
   bin_fields.addTo(app);

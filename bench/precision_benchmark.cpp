@@ -153,11 +153,12 @@ void printExactErrors(const Arguments& arguments, const std::vector<std::string>
       saw_ndt::Localizer localizer(map, options);
       localizer.setInitialPose(sequence.posesLidar().front());
       saw_ndt::ProgressBar progress(static_cast<std::size_t>(sequence.scanCount()));
-      const saw_ndt::DriveLocalization run =
-          saw_ndt::localizeDrive(localizer, *sequence.scans(all(sequence)), [&] { progress.step(); });
+      const saw_ndt::DriveLocalization run = saw_ndt::localizeDrive(localizer, *sequence.scans(all(sequence)),
+                                                                    [&](const auto&, const auto&) { progress.step(); });
       for (std::size_t i = 0; i < run.results.size(); ++i) {
         if (run.results[i].stamp_s - run.results.front().stamp_s < arguments.skip_s) continue;
-        const saw_ndt::PoseError error = saw_ndt::poseError(run.T_map_lidar_reference[i], run.results[i].T_map_base);
+        const saw_ndt::PoseError error =
+            saw_ndt::poseError(run.T_map_lidar_reference[i].value(), run.results[i].T_map_base);
         position_m[m][s].push_back(error.position_m);
         yaw_deg[m][s].push_back(error.yaw_deg);
       }

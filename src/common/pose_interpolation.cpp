@@ -14,11 +14,15 @@ Eigen::Isometry3d interpolatedPose(const Eigen::Isometry3d& from, const Eigen::I
 
 std::optional<Eigen::Isometry3d> poseAt(const std::vector<StampedPose>& trajectory, double stamp_s,
                                         double longest_gap_s) {
+  constexpr double kSameTime_s = 1e-3;
+  if (trajectory.empty() || stamp_s < trajectory.front().stamp_s - kSameTime_s ||
+      stamp_s > trajectory.back().stamp_s + kSameTime_s) {
+    return std::nullopt;
+  }
   const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), stamp_s,
                                       [](const StampedPose& pose, double stamp) { return pose.stamp_s < stamp; });
-  if (after == trajectory.end()) return std::nullopt;
-  if (after->stamp_s == stamp_s) return after->T_map_body;
-  if (after == trajectory.begin()) return std::nullopt;
+  if (after == trajectory.end()) return trajectory.back().T_map_body;
+  if (after == trajectory.begin() || after->stamp_s == stamp_s) return after->T_map_body;
   const StampedPose& before = *(after - 1);
   const double interval_s = after->stamp_s - before.stamp_s;
   if (interval_s > longest_gap_s) return std::nullopt;

@@ -14,7 +14,8 @@ SAW_NDT_EXPORT Eigen::Isometry3d interpolatedPose(const Eigen::Isometry3d& from,
                                                   double share);
 
 /// The pose of a trajectory, sorted by stamp, at a moment: one of its own where a stamp is the same, else that between
-/// the two around it. Nothing outside of the trajectory and in gaps of more than `longest_gap_s`.
+/// the two around it. Nothing in gaps of more than `longest_gap_s`, and outside of the trajectory but for a millisecond,
+/// by which rounded stamps differ: there its first or last pose.
 SAW_NDT_EXPORT std::optional<Eigen::Isometry3d> poseAt(const std::vector<StampedPose>& trajectory, double stamp_s,
                                                        double longest_gap_s);
 

@@ -21,19 +21,23 @@ class SharedSource {
 
   bool next(RecordedScan& scan) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (failure_ || !scans_.next(scan)) return false;
-    while (left_out_ && !scan.failure.empty()) {
-      left_out_(scan.failure);
-      if (scans_.next(scan)) continue;
-      if (!any_) failure_ = std::make_exception_ptr(Error(scan.failure + ", and no other scan could be read"));
-      return false;
+    if (failure_) return false;
+    std::string reason;
+    while (scans_.next(scan)) {
+      reason = failureOf(scan);
+      if (reason.empty()) {
+        any_ = true;
+        return true;
+      }
+      if (!left_out_) {
+        // Scans come in order, so that this is the first bad one.
+        failure_ = std::make_exception_ptr(Error(reason));
+        return false;
+      }
+      left_out_(reason);
     }
-    any_ = true;
-    if (scan.failure.empty() && scan.T_map_lidar) return true;
-    // Scans come in order, so that this is the first bad one.
-    failure_ = std::make_exception_ptr(scan.failure.empty()
-                                           ? Error(scan.name, "", "has no reference pose, which a map is built by")
-                                           : Error(scan.failure));
+    if (!any_ && !reason.empty())
+      failure_ = std::make_exception_ptr(Error(reason + ", and no other scan is any better"));
     return false;
   }
   /// A scan that next() gave is an error.
@@ -46,6 +50,11 @@ class SharedSource {
   }
 
  private:
+  static std::string failureOf(const RecordedScan& scan) {
+    if (!scan.failure.empty() || scan.T_map_lidar) return scan.failure;
+    return scan.name + ": has no reference pose, which a map is built by";
+  }
+
   ScanSource& scans_;
   const std::function<void(const std::string&)>& left_out_;
   bool any_ = false;

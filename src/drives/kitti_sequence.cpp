@@ -83,12 +83,10 @@ void KittiSequence::readScan(int scan, ScanPoints& points) const {
 }
 
 int KittiSequence::binFields() const {
-  // A scan that is cut, empty or very small does not say.
-  constexpr int kScansLookedAt = 10;
-  for (int scan = 0; bin_fields_ == 0 && scan < std::min(scanCount(), kScansLookedAt); ++scan) {
-    bin_fields_ = tellBinFields(scanPath(scan)).value_or(0);
-  }
-  if (bin_fields_ == 0) bin_fields_ = kKittiFields;
+  if (bin_fields_ != 0) return bin_fields_;
+  std::vector<fs::path> paths;
+  for (int scan = 0; scan < scanCount(); ++scan) paths.push_back(scanPath(scan));
+  bin_fields_ = binFieldsOfScans(paths);
   return bin_fields_;
 }
 

@@ -109,6 +109,15 @@ std::optional<int> tellBinFields(const std::filesystem::path& path) {
   }
 }
 
+int binFieldsOfScans(const std::vector<std::filesystem::path>& paths) {
+  // A scan that is cut, empty or very small does not say.
+  constexpr std::size_t kScansLookedAt = 10;
+  for (std::size_t scan = 0; scan < std::min(paths.size(), kScansLookedAt); ++scan) {
+    if (const std::optional<int> fields = tellBinFields(paths[scan])) return *fields;
+  }
+  return kKittiFields;
+}
+
 void requireScanCoordinates(const std::filesystem::path& path, const float* values, std::size_t count, int fields) {
   const std::size_t points = count / static_cast<std::size_t>(fields);
   const std::size_t sampled = std::min(points, kSampledPoints);

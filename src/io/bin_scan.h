@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "saw_ndt/common/scan_view.h"
 
@@ -19,6 +20,9 @@ void requireBinFields(int bin_fields);
 std::optional<int> tellBinFields(const float* values, std::size_t count);
 /// The same of a file; none also where it cannot be read.
 std::optional<int> tellBinFields(const std::filesystem::path& path);
+
+/// The same of the scans of a recording: told by the first of ten that says, kKittiFields where none does.
+int binFieldsOfScans(const std::vector<std::filesystem::path>& paths);
 
 /// Throws Error unless a sample of the points, `fields` floats each, has coordinates that a scan may have, but for a
 /// few. Numbers that are not finite say nothing.

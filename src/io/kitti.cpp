@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <iomanip>
-#include <optional>
-#include <string_view>
-#include <utility>
 
 #include "common/atomic_output.h"
 #include "io/bin_scan.h"
 #include "io/binary_records.h"
-#include "io/number_lines.h"
-#include "io/rigid_transform.h"
+#include "io/kitti_calibration.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -40,30 +36,6 @@ void writeMatrix(std::ostream& stream, const char* key, const Eigen::Matrix<doub
   stream << key << ':';
   for (int i = 0; i < 12; ++i) stream << ' ' << matrix(i / 4, i % 4);
   stream << '\n';
-}
-
-/// The first word of a line, and what follows it and a colon behind it.
-std::pair<std::string_view, std::string_view> splitAtKey(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t";
-  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-  const std::string_view key = line.substr(0, line.find_first_of(" \t:"));
-  line.remove_prefix(key.size());
-  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-  if (!line.empty() && line.front() == ':') line.remove_prefix(1);
-  return {key, line};
-}
-
-/// The rotation whose matrix is given row by row.
-Eigen::Isometry3d rotation(const fs::path& path, std::size_t line, const std::vector<double>& values) {
-  if (values.size() != 9) {
-    throw Error(path.string(), linePlace(line), std::to_string(values.size()) + " numbers, where 9 are needed");
-  }
-  std::vector<double> transform;
-  for (std::size_t i = 0; i < 9; ++i) {
-    transform.push_back(values[i]);
-    if (i % 3 == 2) transform.push_back(0.0);
-  }
-  return rigidTransform(path, line, transform);
 }
 
 }  // namespace
@@ -115,22 +87,11 @@ void writeKittiCalibration(const fs::path& path, const Eigen::Isometry3d& T_came
 }
 
 Eigen::Isometry3d readKittiCalibration(const fs::path& path) {
-  std::optional<Eigen::Isometry3d> Tr, Tr_unrectified;
-  Eigen::Isometry3d rectification = Eigen::Isometry3d::Identity();
-  for (const TextLine& line : readTextLines(path)) {
-    const auto [key, rest] = splitAtKey(line.text);
-    const auto numbers = [&, text = rest] { return parseNumbers(path, line.number, text); };
-    if (key == "Tr") {
-      Tr = rigidTransform(path, line.number, numbers());
-    } else if (key == "Tr_velo_to_cam" || key == "Tr_velo_cam") {
-      Tr_unrectified = rigidTransform(path, line.number, numbers());
-    } else if (key == "R0_rect" || key == "R_rect") {
-      rectification = rotation(path, line.number, numbers());
-    }
-  }
-  if (Tr) return *Tr;
-  if (Tr_unrectified) return rectification * *Tr_unrectified;
-  throw Error(path.string(), "", "no line Tr (LiDAR to left camera)");
+  if (const auto Tr = kittiCalibrationEntry(path, {"Tr"})) return *Tr;
+  const auto Tr_unrectified = kittiCalibrationEntry(path, {"Tr_velo_to_cam", "Tr_velo_cam"});
+  if (!Tr_unrectified) throw Error(path.string(), "", "no line Tr (LiDAR to left camera)");
+  const auto rectification = kittiCalibrationEntry(path, {"R0_rect", "R_rect"});
+  return rectification.value_or(Eigen::Isometry3d::Identity()) * *Tr_unrectified;
 }
 
 }  // namespace saw_ndt

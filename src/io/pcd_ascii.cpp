@@ -89,6 +89,7 @@ std::vector<unsigned char> readPcdAscii(const std::filesystem::path& path, const
     const auto refuse = [&](const std::string& reason) { throw Error(path.string(), linePlace(number), reason); };
     const std::vector<std::string_view> words = wordsOf(line);
     if (words.empty()) continue;
+    if (header.others_follow && points == header.points) break;
     if (++points > header.points) refuse("more points than the " + std::to_string(header.points) + " announced");
     if (words.size() != values) {
       refuse(std::to_string(words.size()) + " numbers, where " + std::to_string(values) + " are needed");

@@ -17,6 +17,7 @@ namespace saw_ndt::internal {
 namespace {
 
 constexpr char kPadding[] = "_";
+constexpr char kTooLarge[] = "is damaged, or too large for the memory";
 
 bool equalButForCase(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
@@ -24,14 +25,14 @@ bool equalButForCase(std::string_view a, std::string_view b) {
   });
 }
 
-std::vector<unsigned char> readBytes(const std::filesystem::path& path, std::ifstream& stream, std::uint64_t size) {
+std::vector<unsigned char> readBytes(const std::filesystem::path& path, std::istream& stream, std::uint64_t size) {
   std::vector<unsigned char> bytes(size);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (!stream) throw Error(path.string(), "", "could not be read on");
   return bytes;
 }
 
-std::vector<unsigned char> readCompressed(const std::filesystem::path& path, std::ifstream& stream) {
+std::vector<unsigned char> readCompressed(const std::filesystem::path& path, std::istream& stream) {
   std::uint32_t sizes[2] = {0, 0};
   stream.read(reinterpret_cast<char*>(sizes), sizeof(sizes));
   const std::vector<unsigned char> compressed = readBytes(path, stream, sizes[0]);
@@ -40,6 +41,23 @@ std::vector<unsigned char> readCompressed(const std::filesystem::path& path, std
     throw Error(path.string(), "", "is damaged: the compressed data do not give the bytes that they should");
   }
   return bytes;
+}
+
+PcdCloud cloudWithoutBytes(const PcdHeader& header) {
+  PcdCloud cloud;
+  cloud.points = header.points;
+  cloud.width = header.width;
+  cloud.height = header.height;
+  cloud.viewpoint = header.viewpoint;
+  // Compressed files have one field after the other, the others one point after the other.
+  const bool by_field = header.data == PcdData::COMPRESSED;
+  const std::size_t point_bytes = header.pointBytes();
+  std::size_t offset = 0;
+  for (const PcdField& field : header.fields) {
+    cloud.columns.push_back({field, offset, by_field ? field.bytes() : point_bytes});
+    offset += field.bytes() * (by_field ? cloud.points : 1);
+  }
+  return cloud;
 }
 
 std::string headerText(const PcdCloud& cloud, const std::vector<PcdColumn>& columns) {
@@ -76,37 +94,27 @@ void PcdCloud::remove(const std::string& name) {
                 columns.end());
 }
 
+PcdCloud cloudOfRows(const std::filesystem::path& path, const PcdHeader& header, std::istream& stream) {
+  PcdCloud cloud = cloudWithoutBytes(header);
+  try {
+    cloud.bytes = header.data == PcdData::ASCII ? readPcdAscii(path, header, stream)
+                                                : readBytes(path, stream, cloud.points * header.pointBytes());
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string(), "", kTooLarge);
+  }
+  return cloud;
+}
+
 PcdCloud readPcdCloud(const std::filesystem::path& path) {
   const PcdHeader header = readPcdHeader(path);
-  PcdCloud cloud;
-  cloud.points = header.points;
-  cloud.width = header.width;
-  cloud.height = header.height;
-  cloud.viewpoint = header.viewpoint;
-  // Compressed files have one field after the other, the others one point after the other.
-  const std::size_t point_bytes = header.pointBytes();
-  std::size_t offset = 0;
-  for (const PcdField& field : header.fields) {
-    const bool by_field = header.data == PcdData::COMPRESSED;
-    cloud.columns.push_back({field, offset, by_field ? field.bytes() : point_bytes});
-    offset += field.bytes() * (by_field ? cloud.points : 1);
-  }
   std::ifstream stream = openInputFile(path);
   stream.seekg(static_cast<std::streamoff>(header.data_offset));
+  if (header.data != PcdData::COMPRESSED) return cloudOfRows(path, header, stream);
+  PcdCloud cloud = cloudWithoutBytes(header);
   try {
-    switch (header.data) {
-      case PcdData::ASCII:
-        cloud.bytes = readPcdAscii(path, header, stream);
-        break;
-      case PcdData::BINARY:
-        cloud.bytes = readBytes(path, stream, cloud.points * point_bytes);
-        break;
-      case PcdData::COMPRESSED:
-        cloud.bytes = readCompressed(path, stream);
-        break;
-    }
+    cloud.bytes = readCompressed(path, stream);
   } catch (const std::bad_alloc&) {
-    throw Error(path.string(), "", "is damaged, or too large for the memory");
+    throw Error(path.string(), "", kTooLarge);
   }
   return cloud;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -72,6 +73,9 @@ struct PcdCloud {
 
 /// Reads a PCD file. Throws Error that names the line or the offset.
 PcdCloud readPcdCloud(const std::filesystem::path& path);
+
+/// The points that lie one after the other, ASCII or binary, from where a stream stands. Throws Error as above.
+PcdCloud cloudOfRows(const std::filesystem::path& path, const PcdHeader& header, std::istream& stream);
 
 /// Writes a compressed binary PCD file without padding (fields named `_`), whole or not at all. Throws Error, also for
 /// a cloud without points, which the format cannot hold.

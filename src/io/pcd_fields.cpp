@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 
+#include "io/ply_cloud.h"
 #include "io/point_times.h"
 #include "saw_ndt/common/error.h"
 
@@ -30,8 +31,12 @@ std::vector<double> numbersOf(const PcdCloud& cloud, const PcdColumn& column) {
 }  // namespace
 
 void requireScanExtension(const std::filesystem::path& path) {
-  if (isBinScan(path) || path.extension() == ".pcd") return;
-  throw Error(path.string(), "", "the name of a point cloud must end in .pcd or .bin");
+  if (isBinScan(path) || isPly(path) || path.extension() == ".pcd") return;
+  throw Error(path.string(), "", "the name of a point cloud must end in .pcd, .ply or .bin");
+}
+
+PcdCloud readCloudFile(const std::filesystem::path& path) {
+  return isPly(path) ? readPlyCloud(path) : readPcdCloud(path);
 }
 
 std::vector<LidarPoint> pointsOf(const std::filesystem::path& path, const PcdCloud& cloud) {

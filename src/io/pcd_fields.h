@@ -11,8 +11,11 @@ namespace saw_ndt::internal {
 
 /// Whether the name of a file says that it holds floats without a header.
 inline bool isBinScan(const std::filesystem::path& path) { return path.extension() == ".bin"; }
-/// Throws Error unless a name ends in .pcd or .bin.
+/// Throws Error unless a name ends in .pcd, .ply or .bin.
 void requireScanExtension(const std::filesystem::path& path);
+
+/// Reads a PCD file or, where the name says so, a PLY file. Throws Error that names the line or the offset.
+PcdCloud readCloudFile(const std::filesystem::path& path);
 
 /// x y z and the intensity, 0 where there is none, of a cloud's points. Throws Error, naming the file, where a
 /// coordinate is missing.

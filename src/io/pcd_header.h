@@ -30,6 +30,7 @@ struct PcdHeader {
   PcdData data = PcdData::BINARY;
   std::uint64_t data_offset = 0;  ///< of the first byte behind the head
   std::size_t lines = 0;          ///< of the head
+  bool others_follow = false;     ///< whether something else may stand behind the points
 
   /// Bytes of a point.
   std::uint64_t pointBytes() const;

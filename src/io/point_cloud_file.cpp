@@ -8,6 +8,8 @@
 #include <type_traits>
 
 #include "io/pcd_fields.h"
+#include "io/ply_cloud.h"
+#include "io/ply_header.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -65,7 +67,7 @@ pcl::PointCloud<PointT> readPointCloud(const std::filesystem::path& path, int bi
       return cloud;
     }
   }
-  const PcdCloud file = readPcdCloud(path);
+  const PcdCloud file = readCloudFile(path);
   fill(cloud, pointsOf(path, file));
   cloud.width = static_cast<std::uint32_t>(file.width);
   cloud.height = static_cast<std::uint32_t>(file.height);
@@ -80,14 +82,15 @@ std::vector<std::string> pointCloudFields(const std::filesystem::path& path) {
   requireScanExtension(path);
   if (isBinScan(path)) return {"x", "y", "z", "intensity"};
   std::vector<std::string> names;
-  for (const PcdField& field : readPcdHeader(path).fields) names.push_back(field.name);
+  const PcdHeader header = isPly(path) ? readPlyHeader(path).cloud : readPcdHeader(path);
+  for (const PcdField& field : header.fields) names.push_back(field.name);
   return names;
 }
 
 void writeLabelledScan(const std::filesystem::path& path, const std::filesystem::path& scan_file,
                        const std::vector<StructuralLabel>& labels, int bin_fields) {
   requireScanExtension(scan_file);
-  PcdCloud cloud = isBinScan(scan_file) ? cloudOf(readScanPoints(scan_file, bin_fields)) : readPcdCloud(scan_file);
+  PcdCloud cloud = isBinScan(scan_file) ? cloudOf(readScanPoints(scan_file, bin_fields)) : readCloudFile(scan_file);
   if (labels.size() != cloud.points) {
     throw Error(scan_file.string(), "",
                 std::to_string(labels.size()) + " labels, where it has " + std::to_string(cloud.points) + " points");

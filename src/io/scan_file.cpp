@@ -1,9 +1,7 @@
 #include "saw_ndt/io/scan_file.h"
 
 #include "io/bin_scan.h"
-#include "io/pcd_cloud.h"
 #include "io/pcd_fields.h"
-#include "io/point_times.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -14,7 +12,7 @@ void readScanPoints(const std::filesystem::path& path, ScanPoints& scan, int bin
   requireScanExtension(path);
   if (isBinScan(path)) return readBinScan(path, scan, bin_fields);
   requireBinFields(bin_fields);
-  scan = scanPointsOf(path, readPcdCloud(path));
+  scan = scanPointsOf(path, readCloudFile(path));
 }
 
 ScanPoints readScanPoints(const std::filesystem::path& path, int bin_fields) {

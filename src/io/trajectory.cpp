@@ -2,11 +2,15 @@
 
 #include <cmath>
 #include <iomanip>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "common/atomic_output.h"
 #include "io/number_lines.h"
 #include "io/rigid_transform.h"
+#include "io/stamp_text.h"
+#include "io/tum_pose.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
@@ -76,6 +80,14 @@ Eigen::Isometry3d rigidTransform(const std::filesystem::path& path, std::size_t 
   return normalizedRotation(T);
 }
 
+void writeTumPose(std::ostream& stream, const StampedPose& pose) {
+  const Eigen::Vector3d& t = pose.T_map_body.translation();
+  Eigen::Quaterniond q = Eigen::Quaterniond(pose.T_map_body.linear()).normalized();
+  if (q.w() < 0.0) q.coeffs() *= -1.0;
+  stream << std::fixed << std::setprecision(9) << pose.stamp_s << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' '
+         << std::setprecision(12) << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
+}
+
 }  // namespace internal
 
 Trajectory readTrajectory(const std::filesystem::path& path) {
@@ -103,9 +115,15 @@ std::vector<Eigen::Isometry3d> readKittiTrajectory(const std::filesystem::path& 
 
 std::vector<double> readStamps(const std::filesystem::path& path) {
   std::vector<double> stamps_s;
-  for (const NumberLine& line : readNumberLines(path)) {
-    requireColumns(path, line, 1);
-    stamps_s.push_back(line.values.front());
+  for (const TextLine& line : readTextLines(path)) {
+    const std::string_view text = std::string_view(line.text).substr(0, line.text.find_last_not_of(" \t\r") + 1);
+    if (const std::optional<double> stamp_s = stampOfDate(text)) {
+      stamps_s.push_back(*stamp_s);
+      continue;
+    }
+    const NumberLine numbers{line.number, parseNumbers(path, line.number, text)};
+    requireColumns(path, numbers, 1);
+    stamps_s.push_back(numbers.values.front());
   }
   return stamps_s;
 }
@@ -119,15 +137,7 @@ void writeStamps(const std::filesystem::path& path, const std::vector<double>& s
 
 void writeTumTrajectory(const std::filesystem::path& path, const std::vector<StampedPose>& trajectory) {
   AtomicOutput output(path);
-  std::ostream& stream = output.stream();
-  stream << std::fixed;
-  for (const StampedPose& pose : trajectory) {
-    const Eigen::Vector3d& t = pose.T_map_body.translation();
-    Eigen::Quaterniond q = Eigen::Quaterniond(pose.T_map_body.linear()).normalized();
-    if (q.w() < 0.0) q.coeffs() *= -1.0;
-    stream << std::setprecision(9) << pose.stamp_s << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' '
-           << std::setprecision(12) << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
-  }
+  for (const StampedPose& pose : trajectory) writeTumPose(output.stream(), pose);
   output.commit();
 }
 

@@ -61,10 +61,21 @@ void requireDifferent(const std::vector<Value>& values, const char* name) {
   }
 }
 
-std::vector<double> stampsOf(const KittiSequence& sequence, const std::vector<int>& scans) {
+std::vector<double> stampsOf(const Recording& recording, const std::vector<int>& scans) {
   std::vector<double> stamps_s;
-  for (const int scan : scans) stamps_s.push_back(sequence.stamps()[static_cast<std::size_t>(scan)]);
+  for (const int scan : scans) stamps_s.push_back(recording.stamps()[static_cast<std::size_t>(scan)]);
   return stamps_s;
+}
+
+// The reference poses of scans, which a benchmark cannot do without.
+std::vector<Eigen::Isometry3d> referencePoses(const Recording& recording, const std::vector<int>& scans) {
+  std::vector<Eigen::Isometry3d> T_map_lidar;
+  for (const int scan : scans) {
+    const std::optional<Eigen::Isometry3d> pose = recording.referencePose(scan);
+    if (!pose) throw Error(recording.path().string(), recording.scanName(scan), "has no reference pose");
+    T_map_lidar.push_back(*pose);
+  }
+  return T_map_lidar;
 }
 
 void begin(const BenchmarkProgress& progress, const std::string& description, std::size_t steps) {
@@ -101,24 +112,23 @@ void BenchmarkOptions::check() const {
 Benchmark::Benchmark(std::vector<BenchmarkDrive> drives, BenchmarkOptions options)
     : drives_(std::move(drives)), options_((options.check(), std::move(options))) {
   std::vector<std::string> names;
-  for (const BenchmarkDrive& drive : drives_) names.push_back(drive.sequence.name());
+  for (const BenchmarkDrive& drive : drives_) names.push_back(drive.recording->name());
   requireDifferent(names, "names of the drives");
   for (const BenchmarkDrive& drive : drives_) {
-    const std::vector<int> scans = parseScanSelection(options_.scans, drive.sequence.scanCount());
-    drive.sequence.posesLidar();
-    if (!anyScanAfterSkip(stampsOf(drive.sequence, scans), options_.skip_s)) {
+    const std::vector<int> scans = parseScanSelection(options_.scans, drive.recording->scanCount());
+    referencePoses(*drive.recording, scans);
+    if (!anyScanAfterSkip(stampsOf(*drive.recording, scans), options_.skip_s)) {
       std::ostringstream message;
-      message << "skip_s = " << options_.skip_s << ": " << drive.sequence.folder().string()
+      message << "skip_s = " << options_.skip_s << ": " << drive.recording->path().string()
               << " has no scan left after so many seconds: lower -skip, to 0 for a short drive";
       throw std::invalid_argument(message.str());
     }
     for (const MapDrive map_drive : options_.drives) {
       if (map_drive == MapDrive::OTHER && !drive.other) {
-        throw std::invalid_argument(drive.sequence.folder().string() + ": no other drive is given for its map");
+        throw std::invalid_argument(drive.recording->path().string() + ": no other drive is given for its map");
       }
-      const KittiSequence& source = map_drive == MapDrive::SAME ? drive.sequence : *drive.other;
-      parseScanSelection(options_.map_scans, source.scanCount());
-      source.posesLidar();
+      const Recording& source = map_drive == MapDrive::SAME ? *drive.recording : *drive.other;
+      referencePoses(source, parseScanSelection(options_.map_scans, source.scanCount()));
     }
   }
 }
@@ -138,23 +148,22 @@ std::vector<BenchmarkRun> Benchmark::run(const BenchmarkProgress& progress) cons
 
 BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive,
                                  const BenchmarkProgress& progress) const {
-  const KittiSequence& source = map_drive == MapDrive::SAME ? drive.sequence : *drive.other;
+  const Recording& source = map_drive == MapDrive::SAME ? *drive.recording : *drive.other;
   const std::vector<int> map_scans = parseScanSelection(options_.map_scans, source.scanCount());
-  const std::vector<int> scans = parseScanSelection(options_.scans, drive.sequence.scanCount());
-  const std::vector<Eigen::Isometry3d>& reference_lidar = drive.sequence.posesLidar();
+  const std::vector<int> scans = parseScanSelection(options_.scans, drive.recording->scanCount());
   const LocalizerOptions& common = options_.localizer;
-  const std::string prefix = drive.sequence.name() + ", " + toString(map_drive) + ": ";
+  const std::string prefix = drive.recording->name() + ", " + toString(map_drive) + ": ";
 
   BenchmarkRun result;
-  result.sequence = drive.sequence.name();
+  result.sequence = drive.recording->name();
   result.drive = map_drive;
   result.map_scans = map_scans.size();
   result.T_base_lidar = common.T_base_lidar;
-  result.T_camera_lidar = drive.sequence.T_camera_lidar();
+  result.T_camera_lidar = drive.recording->cameraCalibration().value_or(Eigen::Isometry3d::Identity());
   result.skip_s = options_.skip_s;
   result.min_likelihood = common.acceptance.min_likelihood;
-  for (const int scan : scans) {
-    result.T_map_base.push_back(reference_lidar[static_cast<std::size_t>(scan)] * common.T_base_lidar.inverse());
+  for (const Eigen::Isometry3d& T_map_lidar : referencePoses(*drive.recording, scans)) {
+    result.T_map_base.push_back(T_map_lidar * common.T_base_lidar.inverse());
   }
 
   begin(progress, prefix + "building the map from " + std::to_string(map_scans.size()) + " scans", map_scans.size());
@@ -185,7 +194,7 @@ BenchmarkRun Benchmark::runDrive(const BenchmarkDrive& drive, MapDrive map_drive
         prefix + "localizing " + std::to_string(scans.size()) + " scans by " + std::to_string(localizers.size()) +
             (localizers.size() == 1 ? " method" : " methods"),
         turns);
-  std::vector<DriveLocalization> runs = localizeByTurns(localizers, *drive.sequence.scans(scans), progress.step_done);
+  std::vector<DriveLocalization> runs = localizeByTurns(localizers, *drive.recording->scans(scans), progress.step_done);
   for (std::size_t m = 0; m < runs.size(); ++m) {
     const std::string& method = options_.methods[m];
     LocalizerOptions options = optionsOf(method, common);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@
 #include "report/localization_summary.h"
 #include "report/voxel_cloud.h"
 #include "saw_ndt/drives/drive_map.h"
-#include "saw_ndt/drives/kitti_sequence.h"
+#include "saw_ndt/drives/recording.h"
 
 namespace saw_ndt {
 
@@ -45,8 +46,8 @@ struct BenchmarkOptions {
 
 /// A drive to localize, and the one for its map where MapDrive::OTHER is asked for. Their poses share a frame.
 struct BenchmarkDrive {
-  KittiSequence sequence;
-  std::optional<KittiSequence> other;
+  std::shared_ptr<const Recording> recording;
+  std::shared_ptr<const Recording> other;  ///< null: there is none
 };
 
 /// One method on one drive in one map.

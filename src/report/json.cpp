@@ -29,6 +29,7 @@ nlohmann::ordered_json toJson(const LocalizationSummary& summary) {
   json["scans"] = summary.scans;
   json["accepted"] = summary.accepted;
   json["rejected"] = summary.rejected;
+  if (summary.left_out) json["left_out"] = *summary.left_out;
   json["states"] = {{"tracking", toJson(summary.tracking)},
                     {"coasting", toJson(summary.coasting)},
                     {"relocalizing", toJson(summary.relocalizing)},

@@ -127,15 +127,14 @@ LocalizationSummary summarize(const DriveLocalization& run, const LocalizerOptio
       mean(collect(run, [](const R& r) { return r.alignment.likelihoods.non_ground; }));
   summary.peak_rss_mb = peakResidentMegabytes();
   summary.threads = internal::threadCount(options.alignment.threads);
-  if (!run.T_map_lidar_reference.empty()) {
-    const Eigen::Isometry3d T_lidar_base = options.T_base_lidar.inverse();
-    std::vector<PosePair> pairs;
-    for (std::size_t i = 0; i < run.results.size(); ++i) {
-      if (!run.results[i].track.pose_known) continue;
-      pairs.push_back({run.results[i].stamp_s, run.T_map_lidar_reference[i] * T_lidar_base, run.results[i].T_map_base});
-    }
-    summary.metrics = metricsAfter(skip_s, pairs);
+  const Eigen::Isometry3d T_lidar_base = options.T_base_lidar.inverse();
+  std::vector<PosePair> pairs;
+  for (std::size_t i = 0; i < run.T_map_lidar_reference.size(); ++i) {
+    const std::optional<Eigen::Isometry3d>& reference = run.T_map_lidar_reference[i];
+    if (!reference || !run.results[i].track.pose_known) continue;
+    pairs.push_back({run.results[i].stamp_s, *reference * T_lidar_base, run.results[i].T_map_base});
   }
+  summary.metrics = metricsAfter(skip_s, pairs);
   return summary;
 }
 

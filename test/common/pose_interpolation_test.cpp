@@ -29,11 +29,16 @@ TEST(PoseInterpolation, BetweenTwoPosesTheShortestTurnIsTaken) {
 }
 
 TEST(PoseInterpolation, NothingOutsideAndInLongGaps) {
-  for (const double stamp_s : {9.999, 12.001, 11.0}) {
+  for (const double stamp_s : {9.99, 12.01, 11.0}) {
     EXPECT_FALSE(poseAt(kTrajectory, stamp_s, 1.0).has_value()) << stamp_s;
   }
   EXPECT_TRUE(poseAt(kTrajectory, 11.0, 1.5).has_value());
   EXPECT_FALSE(poseAt({}, 11.0, 1.5).has_value());
+}
+
+TEST(PoseInterpolation, RoundedStampsOfTheEndsGetTheirPoses) {
+  EXPECT_EQ(poseAt(kTrajectory, 9.9995, 1.0)->matrix(), kTrajectory.front().T_map_body.matrix());
+  EXPECT_EQ(poseAt(kTrajectory, 12.0005, 1.0)->matrix(), kTrajectory.back().T_map_body.matrix());
 }
 
 }  // namespace

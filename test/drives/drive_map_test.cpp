@@ -118,17 +118,25 @@ TEST(SequenceMapErrors, TheFirstBadScanIsNamed) {
     ASSERT_EQ(left_out.size(), 2U);
     EXPECT_NE(left_out[0].find("000001.bin"), std::string::npos) << left_out[0];
     EXPECT_NE(left_out[1].find("000003.bin"), std::string::npos) << left_out[1];
-    expectThrows<Error>([&] { buildDriveMap(*sequence.scans({1, 3}), options); }, {"000003.bin", "no other scan"});
+    expectThrows<Error>(
+        [&] {
+          buildDriveMap(*sequence.scans({1, 3}), options);
+        },
+        {"000003.bin", "no other scan is any better"});
   }
 }
 
-TEST(SequenceMapErrors, AScanWithoutAReferencePoseIsOneWhateverIsLeftOut) {
+TEST(SequenceMapErrors, ScansWithoutAReferencePoseAreLeftOutAndAnErrorWhereThereIsNoOther) {
   const TemporaryFolder folder;
   folder.write("velodyne/000000.bin", "1234567890123456");
   DriveMapOptions options;
-  options.scan_left_out = [](const std::string& failure) { ADD_FAILURE() << failure; };
-  expectThrows<Error>([&] { buildDriveMap(*KittiSequence(folder.path()).scans({0}), options); },
-                      {"000000.bin", "no reference pose"});
+  const KittiSequence sequence(folder.path());
+  expectThrows<Error>([&] { buildDriveMap(*sequence.scans({0}), options); }, {"000000.bin", "no reference pose"});
+  std::vector<std::string> left_out;
+  options.scan_left_out = [&](const std::string& failure) { left_out.push_back(failure); };
+  expectThrows<Error>([&] { buildDriveMap(*sequence.scans({0}), options); },
+                      {"000000.bin", "no reference pose", "no other scan is any better"});
+  EXPECT_EQ(left_out.size(), 1U);
 }
 
 }  // namespace

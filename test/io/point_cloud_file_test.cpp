@@ -114,7 +114,7 @@ TEST(PointCloudFile, NamesFileAndReason) {
   const auto plain = folder.write("plain.pcd", header("1", "ascii") + "1 2 3\n");
   expectThrows<Error>([&] { readPointCloud<pcl::PointXYZL>(plain); }, {plain.string(), "no field label"});
   expectThrows<Error>([&] { readPointCloud<pcl::PointXYZ>(folder.path() / "none.pcd"); }, {"none.pcd", "No such file"});
-  expectThrows<Error>([&] { readPointCloud<pcl::PointXYZ>(folder.write("a.ply", "")); }, {"a.ply", ".pcd or .bin"});
+  expectThrows<Error>([&] { readPointCloud<pcl::PointXYZ>(folder.write("a.las", "")); }, {"a.las", ".ply or .bin"});
   expectThrows<Error>([&] { writePcd(folder.path() / "none" / "a.pcd", labelledCloud()); }, {"a.pcd", "No such file"});
   expectThrows<Error>([&] { writePcd(folder.path() / "a.pcd", pcl::PointCloud<pcl::PointXYZ>()); },
                       {"a.pcd", "without points"});

@@ -8,6 +8,7 @@
 #include "localization/synthetic_drive.h"
 #include "report/scan_errors.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/drives/kitti_sequence.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
@@ -26,7 +27,9 @@ class BenchmarkTest : public ::testing::Test {
     options.localizer.alignment.threads = 1;
   }
 
-  KittiSequence drive(const std::string& name) const { return KittiSequence(folder.path() / name); }
+  std::shared_ptr<const Recording> drive(const std::string& name) const {
+    return std::make_shared<KittiSequence>(folder.path() / name);
+  }
   void expectRefused(std::vector<BenchmarkDrive> drives, std::initializer_list<std::string> parts) const {
     expectThrows<std::invalid_argument>([&] { Benchmark(std::move(drives), options); }, parts);
   }
@@ -102,7 +105,7 @@ TEST_F(BenchmarkTest, MethodsTakeTurnsAnotherOneFirstEachTime) {
       return result;
     };
   };
-  const auto runs = localizeByTurns({named('a'), named('b'), named('c')}, *drive("first").scans({1, 3, 4, 5}));
+  const auto runs = localizeByTurns({named('a'), named('b'), named('c')}, *drive("first")->scans({1, 3, 4, 5}));
   EXPECT_EQ(order, "abcbcacababc");
   ASSERT_EQ(runs.size(), 3U);
   for (const DriveLocalization& run : runs) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,15 @@ struct DriveLocalization {
   std::vector<std::string> names;     ///< see RecordedScan::name
   std::vector<std::string> failures;  ///< why a scan could not be read, empty where it could
   std::vector<LocalizationResult> results;
-  std::vector<Eigen::Isometry3d> T_map_lidar_reference;  ///< reference poses; empty where a scan has none
+  std::vector<std::optional<Eigen::Isometry3d>> T_map_lidar_reference;  ///< reference poses, as far as there are any
 };
 
 /// Localizes the scans of a source one after the other. Reading a scan is no part of its times. A scan that cannot be
 /// read is rejected as Acceptance::UNREADABLE.
-/// @param scan_done  called after each scan; may be empty
-SAW_NDT_EXPORT DriveLocalization localizeDrive(Localizer& localizer, ScanSource& scans,
-                                               const std::function<void()>& scan_done = {});
+/// @param scan_done  called after each scan with what was found; may be empty
+SAW_NDT_EXPORT DriveLocalization
+localizeDrive(Localizer& localizer, ScanSource& scans,
+              const std::function<void(const RecordedScan&, const LocalizationResult&)>& scan_done = {});
 
 /// One way of localizing a scan: that of a Localizer, or one to compare it with.
 using ScanLocalizer = std::function<LocalizationResult(const ScanView& scan, double stamp_s, const ScanPriors& priors)>;

@@ -24,8 +24,8 @@ struct DriveMapOptions {
   double scan_period_s = 0.1;           ///< how long a turn of the LiDAR takes, where azimuths tell times
   std::vector<StampedPose> trajectory;  ///< T_map_lidar of the whole drive by growing stamps, for that motion
   int threads = 0;                      ///< 0: all cores; the map does not depend on it
-  /// Called with the reason of each scan that could not be read, in order and from any thread: it is left out. None:
-  /// such a scan is an error.
+  /// Called with the reason of each scan that could not be read or has no reference pose, in order and from any thread:
+  /// it is left out. None: such a scan is an error.
   std::function<void(const std::string& failure)> scan_left_out;
 
   /// Throws std::invalid_argument that names the field and its value.
@@ -34,8 +34,8 @@ struct DriveMapOptions {
 
 /// Adds the scans of a source, segmented and moved by their reference poses, to a new builder.
 /// @param scan_done  called after each scan, from any thread; may be empty
-/// @throws Error where a scan cannot be read (see scan_left_out) or has no reference pose, the first such scan's; where
-///         none of several scans could be read; where a scan to be compensated by times has none, or the trajectory
+/// @throws Error where a scan cannot be read or has no reference pose (see scan_left_out), the first such scan's; where
+///         no scan is left; where a scan to be compensated by times has none, or the trajectory
 ///         none of its stamp. std::invalid_argument for options that do not hold
 SAW_NDT_EXPORT WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,
                                                 const std::function<void()>& scan_done = {});

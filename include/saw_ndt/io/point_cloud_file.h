@@ -18,14 +18,14 @@ namespace saw_ndt {
 /// Reads a point cloud in metres, as readScanPoints() does, of fields of any number type.
 ///
 /// PointT is pcl::PointXYZ, PointXYZI or PointXYZL. An intensity that the file has not is 0; labels must be there.
-/// Throws Error where the file is of neither kind, missing, damaged, or lacks a field.
+/// Throws Error where the file is of no such kind, missing, damaged, or lacks a field.
 /// @param bin_fields  see readScanPoints()
 template <typename PointT>
 SAW_NDT_EXPORT pcl::PointCloud<PointT> readPointCloud(const std::filesystem::path& path, int bin_fields = 0);
 
 /// Writes the points of a scan's file with labels as a compressed binary PCD file, whole or not at all: all fields that
-/// a PCD file has but padding and an older label, its rows and its viewpoint; x y z intensity and ring and time, where
-/// they are known, of a .bin file; and a `label` (uint32). Throws Error, also where there is not a label for each
+/// a PCD or PLY file has but padding and an older label, its rows and its viewpoint; x y z intensity and ring and time,
+/// where they are known, of a .bin file; and a `label` (uint32). Throws Error, also where there is not a label for each
 /// point.
 /// @param bin_fields  see readScanPoints()
 SAW_NDT_EXPORT void writeLabelledScan(const std::filesystem::path& path, const std::filesystem::path& scan_file,

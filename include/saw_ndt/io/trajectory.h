@@ -36,7 +36,8 @@ SAW_NDT_EXPORT std::vector<StampedPose> readTumTrajectory(const std::filesystem:
 /// Reads poses in KITTI format; those of the KITTI benchmark are of the left camera (lidarPose() converts them).
 SAW_NDT_EXPORT std::vector<Eigen::Isometry3d> readKittiTrajectory(const std::filesystem::path& path);
 
-/// Reads one stamp (s) a line, as KITTI's times.txt. Throws Error that names the line.
+/// Reads one stamp a line: seconds, as KITTI's times.txt, or a date and time in UTC, as KITTI's raw data have it, which
+/// become seconds since 1970. Throws Error that names the line.
 SAW_NDT_EXPORT std::vector<double> readStamps(const std::filesystem::path& path);
 
 /// Writes one stamp (s) a line with 9 decimals. Throws Error.

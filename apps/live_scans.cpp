@@ -1,0 +1,74 @@
+#include "live_scans.h"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "drives/followed_folder.h"
+#include "saw_ndt/io/trajectory.h"
+
+namespace saw_ndt {
+
+Interruption::Interruption() {
+  sigemptyset(&signals_);
+  sigaddset(&signals_, SIGINT);
+  sigaddset(&signals_, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+}
+
+Interruption::~Interruption() {
+  if (!thread_.joinable()) return;
+  ended_ = true;
+  pthread_kill(thread_.native_handle(), SIGINT);
+  thread_.join();
+}
+
+void Interruption::onFirst(std::function<void()> call) {
+  thread_ = std::thread([this, call = std::move(call)] {
+    constexpr int kEndedBySignal = 128;
+    int signal = 0;
+    sigwait(&signals_, &signal);
+    if (ended_) return;
+    call();
+    sigwait(&signals_, &signal);
+    if (!ended_) _exit(kEndedBySignal + signal);
+  });
+}
+
+std::vector<ScanPoints> LiveScans::waitForFirst() {
+  constexpr std::size_t kScans = 5;
+  std::vector<ScanPoints> points;
+  RecordedScan scan;
+  while (first_.size() < kScans && source_.next(scan)) {
+    if (scan.failure.empty()) points.push_back(scan);
+    first_.push_back(std::move(scan));
+    scan = RecordedScan();
+  }
+  return points;
+}
+
+double LiveScans::scanPeriod() const {
+  double least_s = 0.0;  // scans may be left out between two
+  for (std::size_t i = 1; i < first_.size(); ++i) {
+    const double period_s = first_[i].stamp_s - first_[i - 1].stamp_s;
+    if (period_s > 0.0 && (least_s == 0.0 || period_s < least_s)) least_s = period_s;
+  }
+  return least_s > 0.0 ? least_s : kNominalScanPeriod_s;
+}
+
+bool LiveScans::next(RecordedScan& scan) {
+  if (first_.empty()) return source_.next(scan);
+  scan = std::move(first_.front());
+  first_.pop_front();
+  return true;
+}
+
+bool isLive(const LocalizeArguments& arguments) { return arguments.follow; }
+
+std::unique_ptr<LiveSource> openLive(const LocalizeArguments& arguments) {
+  return internal::followFolder(arguments.sequence, arguments.recording.binFields());
+}
+
+}  // namespace saw_ndt
