@@ -104,7 +104,7 @@ class KittiOxtsDrive : public Recording {
     const fs::path cameras = files_.calibration / "calib_cam_to_cam.txt";
     const Eigen::Isometry3d T_camera_lidar = readKittiRawTransform(file);
     if (!fs::exists(cameras)) return T_camera_lidar;
-    const auto rectification = kittiCalibrationEntry(cameras, {"R_rect_00"});
+    const auto rectification = kittiRotation(cameras, {"R_rect_00"});
     return rectification.value_or(Eigen::Isometry3d::Identity()) * T_camera_lidar;
   }
 
@@ -114,7 +114,7 @@ class KittiOxtsDrive : public Recording {
     if (!fs::is_regular_file(files_.calibration)) {
       return readKittiRawTransform(files_.calibration / "calib_imu_to_velo.txt");
     }
-    const auto T_lidar_imu = kittiCalibrationEntry(files_.calibration, {"Tr_imu_to_velo", "Tr_imu_velo"});
+    const auto T_lidar_imu = kittiTransform(files_.calibration, {"Tr_imu_to_velo", "Tr_imu_velo"});
     if (!T_lidar_imu) throw Error(files_.calibration.string(), "", "no line Tr_imu_velo (IMU to LiDAR)");
     return *T_lidar_imu;
   }

@@ -87,10 +87,10 @@ void writeKittiCalibration(const fs::path& path, const Eigen::Isometry3d& T_came
 }
 
 Eigen::Isometry3d readKittiCalibration(const fs::path& path) {
-  if (const auto Tr = kittiCalibrationEntry(path, {"Tr"})) return *Tr;
-  const auto Tr_unrectified = kittiCalibrationEntry(path, {"Tr_velo_to_cam", "Tr_velo_cam"});
+  if (const auto Tr = kittiTransform(path, {"Tr"})) return *Tr;
+  const auto Tr_unrectified = kittiTransform(path, {"Tr_velo_to_cam", "Tr_velo_cam"});
   if (!Tr_unrectified) throw Error(path.string(), "", "no line Tr (LiDAR to left camera)");
-  const auto rectification = kittiCalibrationEntry(path, {"R0_rect", "R_rect"});
+  const auto rectification = kittiRotation(path, {"R0_rect", "R_rect"});
   return rectification.value_or(Eigen::Isometry3d::Identity()) * *Tr_unrectified;
 }
 

@@ -36,18 +36,31 @@ Eigen::Isometry3d rotation(const std::filesystem::path& path, std::size_t line, 
   return rigidTransform(path, line, transform);
 }
 
-}  // namespace
-
-std::optional<Eigen::Isometry3d> kittiCalibrationEntry(const std::filesystem::path& path,
-                                                       const std::vector<std::string_view>& keys) {
-  std::optional<Eigen::Isometry3d> entry;
+/// The numbers of the last line of one of these keys, and its own number; 0 where there is none.
+NumberLine numbersOf(const std::filesystem::path& path, const std::vector<std::string_view>& keys) {
+  NumberLine found{0, {}};
   for (const TextLine& line : readTextLines(path)) {
     const auto [key, rest] = splitAtKey(line.text);
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) continue;
-    const std::vector<double> numbers = parseNumbers(path, line.number, rest);
-    entry = numbers.size() == 9 ? rotation(path, line.number, numbers) : rigidTransform(path, line.number, numbers);
+    found = {line.number, parseNumbers(path, line.number, rest)};
   }
-  return entry;
+  return found;
+}
+
+}  // namespace
+
+std::optional<Eigen::Isometry3d> kittiTransform(const std::filesystem::path& path,
+                                                const std::vector<std::string_view>& keys) {
+  const NumberLine line = numbersOf(path, keys);
+  if (line.number == 0) return std::nullopt;
+  return rigidTransform(path, line.number, line.values);
+}
+
+std::optional<Eigen::Isometry3d> kittiRotation(const std::filesystem::path& path,
+                                               const std::vector<std::string_view>& keys) {
+  const NumberLine line = numbersOf(path, keys);
+  if (line.number == 0) return std::nullopt;
+  return rotation(path, line.number, line.values);
 }
 
 }  // namespace saw_ndt::internal

@@ -8,10 +8,14 @@
 
 namespace saw_ndt::internal {
 
-/// The line of a KITTI calibration file whose key is one of these: 12 numbers, a rigid transform row by row, or 9, a
-/// rotation. Colons and blanks before the numbers may be there or not. Nothing where there is no such line. Throws
-/// Error that names the line.
-std::optional<Eigen::Isometry3d> kittiCalibrationEntry(const std::filesystem::path& path,
-                                                       const std::vector<std::string_view>& keys);
+/// The line of a KITTI calibration file whose key is one of these, a rigid transform of 12 numbers row by row. Colons
+/// and blanks before the numbers may be there or not. Nothing where there is no such line. Throws Error that names the
+/// line.
+std::optional<Eigen::Isometry3d> kittiTransform(const std::filesystem::path& path,
+                                                const std::vector<std::string_view>& keys);
+
+/// The same of a rotation of 9 numbers.
+std::optional<Eigen::Isometry3d> kittiRotation(const std::filesystem::path& path,
+                                               const std::vector<std::string_view>& keys);
 
 }  // namespace saw_ndt::internal
