@@ -1,13 +1,16 @@
 #include "drives/prior_sources.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/pose_interpolation.h"
+#include "io/csv_table.h"
 #include "io/number_lines.h"
+#include "io/rigid_transform.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/trajectory.h"
 
@@ -23,34 +26,6 @@ constexpr double kSameTime_s = 0.05;
 // No odometry is better from scan to scan.
 constexpr double kLeastSigma_m = 0.002;
 constexpr double kLeastSigma_deg = 0.01;
-
-bool isCsv(const std::vector<TextLine>& lines) {
-  return !lines.empty() && lines.front().text.find(',') != std::string::npos;
-}
-
-// The lines of a CSV file of numbers without its names.
-std::vector<NumberLine> readCsvLines(const std::filesystem::path& path, const std::vector<std::size_t>& columns) {
-  std::vector<NumberLine> lines;
-  std::vector<TextLine> texts = readTextLines(path);
-  const std::size_t letter = texts.front().text.find_first_not_of(" \t\"");
-  if (letter != std::string::npos && std::isalpha(static_cast<unsigned char>(texts.front().text[letter])) != 0) {
-    texts.erase(texts.begin());
-  }
-  for (TextLine& line : texts) {
-    std::replace(line.text.begin(), line.text.end(), ',', ' ');
-    NumberLine numbers{line.number, parseNumbers(path, line.number, line.text)};
-    const std::size_t count = numbers.values.size();
-    if (std::find(columns.begin(), columns.end(), count) == columns.end()) {
-      std::string wanted = std::to_string(columns.front());
-      for (std::size_t i = 1; i < columns.size(); ++i) wanted += " or " + std::to_string(columns[i]);
-      throw Error(path.string(), linePlace(line.number),
-                  std::to_string(count) + " numbers, where " + wanted + " are needed");
-    }
-    lines.push_back(std::move(numbers));
-  }
-  if (lines.empty()) throw Error(path.string(), "", "holds no line of numbers");
-  return lines;
-}
 
 template <typename Stamped>
 void requireGrowingStamps(const std::filesystem::path& path, const std::vector<Stamped>& entries) {
@@ -89,22 +64,20 @@ struct OdometryPose {
 
 std::vector<OdometryPose> readOdometry(const std::filesystem::path& path, const OdometryDrift& drift) {
   std::vector<OdometryPose> poses;
-  const bool is_csv = isCsv(readTextLines(path));
-  const std::vector<StampedPose> trajectory = is_csv ? std::vector<StampedPose>() : readTumTrajectory(path);
-  for (const StampedPose& pose : trajectory) poses.push_back({pose.stamp_s, pose.T_map_body});
-  for (const NumberLine& line : is_csv ? readCsvLines(path, {10}) : std::vector<NumberLine>()) {
-    const std::vector<double>& v = line.values;
-    OdometryPose& pose = poses.emplace_back();
-    pose.stamp_s = v[0];
-    pose.T.translation() << v[1], v[2], v[3];
-    const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-    constexpr double kNormTolerance = 1e-3;
-    if (std::abs(q.norm() - 1.0) > kNormTolerance || v[8] < 0.0 || v[9] < 0.0) {
-      throw Error(path.string(), linePlace(line.number), "a quaternion of norm 1 and sigmas of 0 or more are needed");
+  const std::vector<TextLine> lines = readAllLines(path);
+  const bool is_csv = isCsv(lines);
+  if (is_csv) {
+    for (const NumberLine& line : csvNumberLines(csvTable(path, lines), {10})) {
+      std::array<double, 8> values{};
+      std::copy_n(line.values.begin(), values.size(), values.begin());
+      const StampedPose pose = stampedPose(path, line.number, values);
+      if (line.values[8] < 0.0 || line.values[9] < 0.0) {
+        throw Error(path.string(), linePlace(line.number), "sigmas of 0 or more are needed");
+      }
+      poses.push_back({pose.stamp_s, pose.T_map_body, line.values[8], line.values[9]});
     }
-    pose.T.linear() = q.normalized().toRotationMatrix();
-    pose.sigma_m = v[8];
-    pose.sigma_deg = v[9];
+  } else {
+    for (const StampedPose& pose : readTumTrajectory(path)) poses.push_back({pose.stamp_s, pose.T_map_body});
   }
   requireGrowingStamps(path, poses);
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -176,12 +149,13 @@ std::vector<StampedPosition> readPositions(const std::filesystem::path& path, do
     added.position.covariance = sigmas_m.cwiseAbs2().asDiagonal();
   };
   const Eigen::Vector3d default_m = Eigen::Vector3d::Constant(sigma_m);
-  if (!isCsv(readTextLines(path))) {
+  const std::vector<TextLine> lines = readAllLines(path);
+  if (!isCsv(lines)) {
     for (const StampedPose& pose : readTumTrajectory(path)) {
       add(pose.stamp_s, pose.T_map_body.translation(), default_m);
     }
   } else {
-    for (const NumberLine& line : readCsvLines(path, {4, 7})) {
+    for (const NumberLine& line : csvNumberLines(csvTable(path, lines), {4, 7})) {
       const std::vector<double>& v = line.values;
       const Eigen::Vector3d sigmas_m = v.size() == 7 ? Eigen::Vector3d(v[4], v[5], v[6]) : default_m;
       if (!(sigmas_m.array() > 0.0).all()) {

@@ -1,5 +1,6 @@
 #include "io/number_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -16,17 +17,27 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::string linePlace(std::size_t number) { return "line " + std::to_string(number); }
 
-std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
+std::vector<TextLine> readAllLines(const std::filesystem::path& path) {
   std::ifstream stream = openInputFile(path);
   std::vector<TextLine> lines;
   std::string text;
   for (std::size_t number = 1; std::getline(stream, text); ++number) {
     if (number == 1 && text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
       text.erase(0, kByteOrderMark.size());
-    const std::size_t first = text.find_first_not_of(kBlanks);
-    if (first != std::string::npos && text[first] != '#') lines.push_back({number, text});
+    if (text.find_first_not_of(kBlanks) != std::string::npos) lines.push_back({number, text});
   }
   if (stream.bad()) throw Error(path.string(), "", "could not be read");
+  return lines;
+}
+
+bool isComment(const TextLine& line) {
+  const std::size_t first = line.text.find_first_not_of(kBlanks);
+  return first != std::string::npos && line.text[first] == '#';
+}
+
+std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
+  std::vector<TextLine> lines = readAllLines(path);
+  lines.erase(std::remove_if(lines.begin(), lines.end(), isComment), lines.end());
   return lines;
 }
 
@@ -48,12 +59,16 @@ std::vector<double> parseNumbers(const std::filesystem::path& path, std::size_t 
   return values;
 }
 
-std::vector<NumberLine> readNumberLines(const std::filesystem::path& path) {
-  std::vector<NumberLine> lines;
-  for (const TextLine& line : readTextLines(path)) {
-    lines.push_back({line.number, parseNumbers(path, line.number, line.text)});
+std::vector<NumberLine> parseNumberLines(const std::filesystem::path& path, const std::vector<TextLine>& lines) {
+  std::vector<NumberLine> numbers;
+  for (const TextLine& line : lines) {
+    if (!isComment(line)) numbers.push_back({line.number, parseNumbers(path, line.number, line.text)});
   }
-  return lines;
+  return numbers;
+}
+
+std::vector<NumberLine> readNumberLines(const std::filesystem::path& path) {
+  return parseNumberLines(path, readAllLines(path));
 }
 
 }  // namespace saw_ndt::internal

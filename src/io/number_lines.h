@@ -23,11 +23,20 @@ struct NumberLine {
 /// "line N", the place that an Error names.
 std::string linePlace(std::size_t number);
 
-/// The lines of a file that are neither blank nor comments ('#' first), without their ends and a byte-order mark.
+/// The lines of a file that are not blank, without their ends and a byte-order mark.
+std::vector<TextLine> readAllLines(const std::filesystem::path& path);
+
+/// Whether '#' is the first character of a line that is no blank.
+bool isComment(const TextLine& line);
+
+/// readAllLines() without comments.
 std::vector<TextLine> readTextLines(const std::filesystem::path& path);
 
 /// Numbers separated by blanks, whatever the locale. Throws Error that quotes what is no finite number.
 std::vector<double> parseNumbers(const std::filesystem::path& path, std::size_t line, std::string_view text);
+
+/// The numbers of those lines that are no comments; see parseNumbers().
+std::vector<NumberLine> parseNumberLines(const std::filesystem::path& path, const std::vector<TextLine>& lines);
 
 /// readTextLines() and parseNumbers() in one.
 std::vector<NumberLine> readNumberLines(const std::filesystem::path& path);

@@ -1,5 +1,7 @@
 #include "saw_ndt/io/trajectory.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <optional>
@@ -7,6 +9,8 @@
 #include <string_view>
 
 #include "common/atomic_output.h"
+#include "io/csv_table.h"
+#include "io/csv_trajectory.h"
 #include "io/number_lines.h"
 #include "io/rigid_transform.h"
 #include "io/stamp_text.h"
@@ -30,25 +34,19 @@ void requireColumns(const std::filesystem::path& path, const NumberLine& line, s
               std::to_string(line.values.size()) + " numbers, where " + std::to_string(columns) + " are needed");
 }
 
-std::vector<NumberLine> readPoseLines(const std::filesystem::path& path) {
-  std::vector<NumberLine> lines = readNumberLines(path);
+std::vector<NumberLine> poseLines(const std::filesystem::path& path, const std::vector<TextLine>& texts) {
+  std::vector<NumberLine> lines = parseNumberLines(path, texts);
   if (lines.empty()) throw Error(path.string(), "", "holds no pose");
   return lines;
 }
 
+std::vector<NumberLine> readPoseLines(const std::filesystem::path& path) { return poseLines(path, readAllLines(path)); }
+
 StampedPose tumPose(const std::filesystem::path& path, const NumberLine& line) {
   requireColumns(path, line, kTumColumns);
-  const std::vector<double>& v = line.values;
-  const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-  if (std::abs(q.norm() - 1.0) > kRigidityTolerance) {
-    throw Error(path.string(), linePlace(line.number),
-                "the quaternion's norm is " + std::to_string(q.norm()) + ", not 1");
-  }
-  StampedPose pose;
-  pose.stamp_s = v[0];
-  pose.T_map_body.translation() << v[1], v[2], v[3];
-  pose.T_map_body.linear() = q.normalized().toRotationMatrix();
-  return pose;
+  std::array<double, kTumColumns> values{};
+  std::copy(line.values.begin(), line.values.end(), values.begin());
+  return stampedPose(path, line.number, values);
 }
 
 std::vector<StampedPose> tumPoses(const std::filesystem::path& path, const std::vector<NumberLine>& lines) {
@@ -88,15 +86,31 @@ void writeTumPose(std::ostream& stream, const StampedPose& pose) {
          << std::setprecision(12) << q.x() << ' ' << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
 }
 
+StampedPose stampedPose(const std::filesystem::path& path, std::size_t line, const std::array<double, 8>& values) {
+  const std::array<double, 8>& v = values;
+  const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
+  if (std::abs(q.norm() - 1.0) > kRigidityTolerance) {
+    throw Error(path.string(), linePlace(line), "the quaternion's norm is " + std::to_string(q.norm()) + ", not 1");
+  }
+  StampedPose pose;
+  pose.stamp_s = v[0];
+  pose.T_map_body.translation() << v[1], v[2], v[3];
+  pose.T_map_body.linear() = q.normalized().toRotationMatrix();
+  return pose;
+}
+
 }  // namespace internal
 
 Trajectory readTrajectory(const std::filesystem::path& path) {
-  const std::vector<NumberLine> lines = readPoseLines(path);
+  const std::vector<TextLine> texts = readAllLines(path);
+  if (isCsv(texts)) return {TrajectoryFormat::CSV, csvPoses(csvTable(path, texts))};
+  const std::vector<NumberLine> lines = poseLines(path, texts);
   const std::size_t columns = lines.front().values.size();
   if (columns == kTumColumns) return {TrajectoryFormat::TUM, tumPoses(path, lines)};
   if (columns != kKittiColumns) {
-    throw Error(path.string(), linePlace(lines.front().number),
-                std::to_string(columns) + " numbers, where 8 (TUM) or 12 (KITTI) are needed");
+    throw Error(
+        path.string(), linePlace(lines.front().number),
+        std::to_string(columns) + " numbers, where 8 (TUM) or 12 (KITTI) are needed, or commas between them (CSV)");
   }
   Trajectory trajectory{TrajectoryFormat::KITTI, {}};
   for (const Eigen::Isometry3d& T : kittiPoses(path, lines)) {

@@ -9,10 +9,11 @@
 
 namespace saw_ndt {
 
-/// The two text formats of trajectories.
+/// The text formats of trajectories.
 enum class TrajectoryFormat {
   TUM,    ///< stamp tx ty tz qx qy qz qw
   KITTI,  ///< 12 numbers, the upper 3x4 of the pose row by row; no stamps
+  CSV,    ///< values separated by commas: see readTrajectory()
 };
 
 /// The time from a scan to the next where a KITTI trajectory comes without stamps.
@@ -24,10 +25,18 @@ struct Trajectory {
   std::vector<StampedPose> poses;  ///< stamps of a KITTI file: position in the file times kNominalScanPeriod_s
 };
 
-/// Reads a trajectory in either format, told apart by the number of columns. In all readers below lines that are blank
+/// Reads a trajectory in any format. What has a comma in its first line is CSV, the others are told apart by the number
+/// of columns. In all readers below lines that are blank
 /// or start with '#' are skipped, and what is wrong is an Error that names the line: another number of columns, what is
 /// no finite number, a quaternion whose norm is off 1 by more than 1e-3, a matrix that is no rigid transform to within
 /// 1e-3. A file without poses is an Error too. Rotations are returned normalized.
+///
+/// CSV has the columns stamp, x, y, z, qx, qy, qz, qw in this order, or a first line of names that say which column is
+/// which; others are then not read. The line of names may start with '#'. A name is made of words, of which capitals do
+/// not matter, and may end in its unit, such as `stamp_s`, `x_m` or `p_RS_R_x [m]`:
+/// - stamp: the word stamp, timestamp, time or t; in s, ms, us or ns. Where no unit is named it is s, or ns above 1e17.
+/// - position: x, y, z, alone or after p, pos, position, t or translation; tx, px and the like; in m.
+/// - quaternion: qx, qy, qz, qw, or x, y, z, w after q, quat, quaternion, orientation or rotation.
 SAW_NDT_EXPORT Trajectory readTrajectory(const std::filesystem::path& path);
 
 /// Reads stamped poses in TUM format.
