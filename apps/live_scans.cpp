@@ -68,7 +68,8 @@ bool LiveScans::next(RecordedScan& scan) {
 bool isLive(const LocalizeArguments& arguments) { return arguments.follow; }
 
 std::unique_ptr<LiveSource> openLive(const LocalizeArguments& arguments) {
-  return internal::followFolder(arguments.sequence, arguments.recording.binFields());
+  return internal::followFolder(arguments.sequence, arguments.recording.binFields(),
+                                static_cast<std::size_t>(arguments.max_waiting));
 }
 
 }  // namespace saw_ndt

@@ -28,6 +28,9 @@ void LocalizeArguments::addTo(AppOptions& app) {
   app.addOption("skip", &skip_s, "SECONDS", "time at the start that the errors leave out; 0 for short drives");
   app.addFlag("follow", &follow,
               "SEQUENCE is a folder into which scans are written: go on with them until interrupted (Ctrl-C, SIGTERM)");
+  app.addOption("max-waiting", &max_waiting, "N",
+                "scans of a live source that may wait while one is localized; where more do, all but the newest are "
+                "left out");
   app.addOption("stream", &stream_file, "FILE",
                 "write each pose as it is found, with state and standard deviations, into a file, a pipe or, with -, "
                 "to stdout");
@@ -86,6 +89,7 @@ void LocalizeArguments::check(const AppOptions& app) {
     checkOption(initial_radius_m_ > 0.0, "initial-radius", initial_radius_m_, "positive");
     checkOption(initial_yaw_range_deg_ > 0.0 && initial_yaw_range_deg_ <= 180.0, "initial-yaw-range",
                 initial_yaw_range_deg_, "positive and at most 180");
+    checkOption(max_waiting >= 1, "max-waiting", max_waiting, "1 or more");
     checkOption(gnss_sigma_m > 0.0, "gnss-sigma", gnss_sigma_m, "positive");
     checkOption(drift.share >= 0.0, "odometry-drift", drift.share, "0 or more");
     checkOption(drift.deg_per_s >= 0.0, "odometry-drift-deg", drift.deg_per_s, "0 or more");

@@ -24,6 +24,7 @@ struct LocalizeArguments {
   double gnss_sigma_m = 2.0;
   bool strict = false;
   bool follow = false;
+  int max_waiting = 5;      ///< scans of a live source
   std::string stream_file;  ///< empty: none
   std::string stream_format = "json";
   LocalizerOptions options;  ///< segmentation and motion compensation as stated alone

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -50,9 +51,10 @@ double changeTime(const fs::path& path) {
 
 class FollowedFolder : public LiveSource {
  public:
-  FollowedFolder(const fs::path& folder, int bin_fields)
+  FollowedFolder(const fs::path& folder, int bin_fields, std::size_t max_waiting)
       : folder_(folder),
         bin_fields_(bin_fields),
+        max_waiting_(max_waiting),
         events_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC), folder),
         stop_event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC), folder) {
     requireBinFields(bin_fields);
@@ -67,10 +69,13 @@ class FollowedFolder : public LiveSource {
     while (!stopped_) {
       takeEvents();
       if (!waiting_.empty()) {
-        left_out_ += waiting_.size() - 1;
-        number_ += static_cast<int>(waiting_.size());
-        const std::string name = waiting_.back();
-        waiting_.clear();
+        if (waiting_.size() > max_waiting_) {
+          left_out_ += waiting_.size() - 1;
+          number_ += static_cast<int>(waiting_.size()) - 1;
+          waiting_.erase(waiting_.begin(), waiting_.end() - 1);
+        }
+        const std::string name = waiting_.front();
+        waiting_.pop_front();
         read(name, scan);
         return true;
       }
@@ -134,7 +139,7 @@ class FollowedFolder : public LiveSource {
     const fs::path file = folder_ / name;
     last_read_ = name;
     last_change_s_ = changeTime(file);
-    scan.number = number_;
+    scan.number = number_++;
     scan.name = name;
     scan.stamp_s = stampOfName(file.stem().string()).value_or(last_change_s_);
     scan.T_map_lidar.reset();
@@ -151,19 +156,20 @@ class FollowedFolder : public LiveSource {
 
   fs::path folder_;
   int bin_fields_;  // 0: not told yet
+  std::size_t max_waiting_;
   Descriptor events_, stop_event_;
-  std::vector<std::string> waiting_;  // names, the newest at the end
+  std::deque<std::string> waiting_;  // names, the newest at the end
   std::string last_read_;
   double last_change_s_ = 0.0;
-  int number_ = -1;
+  int number_ = 0;
   std::atomic<bool> stopped_{false};
   std::atomic<std::size_t> left_out_{0}, rejected_{0};
 };
 
 }  // namespace
 
-std::unique_ptr<LiveSource> followFolder(const fs::path& folder, int bin_fields) {
-  return std::make_unique<FollowedFolder>(folder, bin_fields);
+std::unique_ptr<LiveSource> followFolder(const fs::path& folder, int bin_fields, std::size_t max_waiting) {
+  return std::make_unique<FollowedFolder>(folder, bin_fields, max_waiting);
 }
 
 }  // namespace saw_ndt::internal

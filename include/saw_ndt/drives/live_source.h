@@ -7,7 +7,8 @@
 namespace saw_ndt {
 
 /// Scans of a source that does not end by itself, as they come: next() waits for a scan that it has not given yet, and
-/// returns false once the source is stopped. Where several wait, because the caller is late, it gives the newest one.
+/// returns false once the source is stopped. As many as `max_waiting` of its maker may wait for a caller that is busy;
+/// where more do, it is late, and gets the newest one instead of all of them.
 class SAW_NDT_EXPORT LiveSource : public ScanSource {
  public:
   std::optional<std::size_t> scanCount() const override { return std::nullopt; }
