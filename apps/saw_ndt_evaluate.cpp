@@ -65,7 +65,7 @@ void setStamps(const Files& files, const std::string& path, saw_ndt::Trajectory&
 }
 
 /// Reads both files; KITTI poses come back as poses of the LiDAR, or of the camera's position where no -calib is given.
-std::pair<saw_ndt::Trajectory, saw_ndt::Trajectory> readTrajectories(const Files& files) {
+std::pair<saw_ndt::Trajectory, saw_ndt::Trajectory> readTrajectories(const Files& files, bool has_stamp_options) {
   using saw_ndt::TrajectoryFormat;
   std::pair<saw_ndt::Trajectory, saw_ndt::Trajectory> both{saw_ndt::readTrajectory(files.reference),
                                                            saw_ndt::readTrajectory(files.estimate)};
@@ -73,6 +73,10 @@ std::pair<saw_ndt::Trajectory, saw_ndt::Trajectory> readTrajectories(const Files
   const bool both_kitti = reference.format == TrajectoryFormat::KITTI && estimate.format == TrajectoryFormat::KITTI;
   const bool one_kitti =
       !both_kitti && (reference.format == TrajectoryFormat::KITTI || estimate.format == TrajectoryFormat::KITTI);
+  if (both_kitti && files.times.empty() && has_stamp_options) {
+    throw saw_ndt::UsageError(
+        "options -max-difference, -offset and -interpolate need the stamps of the KITTI files: -times FILE");
+  }
   if (one_kitti && (files.times.empty() || files.calib.empty())) {
     const std::string& kitti = reference.format == TrajectoryFormat::KITTI ? files.reference : files.estimate;
     throw saw_ndt::UsageError(kitti +
@@ -138,10 +142,10 @@ struct RelativeArguments {
   bool way_of_reference = false;
   double tolerance = saw_ndt::RelativeErrorOptions().relative_tolerance;
 
-  /// Nothing where `option` is not given. @throws UsageError
-  std::optional<saw_ndt::RelativeErrorOptions> options(const saw_ndt::AppOptions& app, const std::string& option,
+  /// Nothing where `delta`, the value of `option`, is 0. @throws UsageError
+  std::optional<saw_ndt::RelativeErrorOptions> options(const std::string& option,
                                                        saw_ndt::RelativeErrorOptions::Unit unit, double delta) const {
-    if (!app.isGiven(option)) return std::nullopt;
+    if (delta == 0.0) return std::nullopt;
     saw_ndt::RelativeErrorOptions options;
     options.unit = unit;
     options.delta = delta;
@@ -158,7 +162,7 @@ struct RelativeArguments {
 };
 
 void checkUsage(const saw_ndt::AppOptions& app, const saw_ndt::PairingOptions& pairing,
-                const std::string& picture_folder) {
+                const RelativeArguments& relative, const std::string& picture_folder) {
   if (pairing.skip_s < 0.0) throw saw_ndt::UsageError("option -skip: must be 0 or greater");
   if (pairing.max_difference_s < 0.0) throw saw_ndt::UsageError("option -max-difference: must be 0 or greater");
   if (!(pairing.longest_gap_s > 0.0)) throw saw_ndt::UsageError("option -longest-gap: must be positive");
@@ -168,9 +172,8 @@ void checkUsage(const saw_ndt::AppOptions& app, const saw_ndt::PairingOptions& p
   if (!pairing.interpolate && app.isGiven("longest-gap")) {
     throw saw_ndt::UsageError("option -longest-gap: is for -interpolate alone");
   }
-  const bool has_relative = app.isGiven("relative-frames") || app.isGiven("relative-metres");
   for (const char* name : {"all-pairs", "way-of-reference", "relative-tolerance"}) {
-    if (app.isGiven(name) && !has_relative) {
+    if (app.isGiven(name) && relative.frames == 0.0 && relative.metres == 0.0) {
       throw saw_ndt::UsageError(std::string("option -") + name +
                                 ": is for -relative-frames and -relative-metres alone");
     }
@@ -212,8 +215,10 @@ int main(int argc, char** argv) {
   app.addFlag("interpolate", &pairing.interpolate,
               "compare every pose of ESTIMATE with the reference at its own moment, between two of REFERENCE");
   app.addOption("longest-gap", &pairing.longest_gap_s, "SECONDS", "greatest time between two such poses of REFERENCE");
-  app.addOption("relative-frames", &relative.frames, "POSES", "relative errors between poses so many pairs apart");
-  app.addOption("relative-metres", &relative.metres, "METRES", "relative errors between poses so long a way apart");
+  app.addOption("relative-frames", &relative.frames, "POSES",
+                "relative errors between poses so many pairs apart; 0: none");
+  app.addOption("relative-metres", &relative.metres, "METRES",
+                "relative errors between poses so long a way apart; 0: none");
   app.addFlag("all-pairs", &relative.all_pairs,
               "relative errors from every pose, not only from where the last one ended");
   app.addFlag("way-of-reference", &relative.way_of_reference,
@@ -225,10 +230,11 @@ int main(int argc, char** argv) {
 
   return saw_ndt::runApp(argc, argv, app, [&] {
     using Unit = saw_ndt::RelativeErrorOptions::Unit;
-    checkUsage(app, pairing, picture_folder);
-    const auto by_frames = relative.options(app, "relative-frames", Unit::FRAMES, relative.frames);
-    const auto by_metres = relative.options(app, "relative-metres", Unit::METRES, relative.metres);
-    const auto [reference, estimate] = readTrajectories(files);
+    checkUsage(app, pairing, relative, picture_folder);
+    const auto by_frames = relative.options("relative-frames", Unit::FRAMES, relative.frames);
+    const auto by_metres = relative.options("relative-metres", Unit::METRES, relative.metres);
+    const auto [reference, estimate] =
+        readTrajectories(files, app.isGiven("max-difference") || app.isGiven("offset") || app.isGiven("interpolate"));
     checkStamps(app, files, files.reference, reference);
     checkStamps(app, files, files.estimate, estimate);
     saw_ndt::PairedTrajectories paired = saw_ndt::pairTrajectories(reference.poses, estimate.poses, pairing);

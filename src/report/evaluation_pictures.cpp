@@ -18,7 +18,7 @@ namespace {
 
 using Columns = std::vector<std::vector<double>>;
 
-constexpr int kWidth_px = 1000, kPanel_px = 300, kTitle_px = 80, kAxis_px = 62;
+constexpr int kWidth_px = 1000, kPanel_px = 300, kTitle_px = 66, kAxis_px = 62;
 constexpr std::size_t kManyPoses = 20000;
 constexpr char kStyle[] =
     "set tics out nomirror\nset border 3 lc rgb '#555555'\nset grid lt 1 lw 0.6 lc rgb '#e3e3e3'\n";
@@ -111,7 +111,7 @@ GnuplotPicture trajectoryPicture(const TrajectoryEvaluation& evaluation, const s
        << static_cast<double>(kAxis_px) / picture.height_px << "\nset tmargin at screen "
        << 1.0 - static_cast<double>(kTitle_px) / picture.height_px
        << "\nset format '%.10g'\nset xtics autofreq\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
-       << "set title " << gnuplotQuoted("trajectories from above, " + alignmentText(evaluation)) << " offset 0,1.5\n"
+       << "set title " << gnuplotQuoted("trajectories from above, " + alignmentText(evaluation)) << " offset 0,1.2\n"
        << "set key at graph 0.0,1.01 left bottom horizontal Left reverse\n"
        << "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n"
        << "set cbrange [" << *least_m << ':' << std::max(*greatest_m, *least_m + 1e-9)
@@ -149,12 +149,13 @@ GnuplotPicture timePicture(const std::string& name, const std::string& title, co
   draw.precision(12);
   const double height_px = picture.height_px;
   draw << kStyle << "set xrange [" << times_s.front() << ':' << std::max(times_s.back(), times_s.front() + 1e-3)
-       << "]\nset lmargin at screen 0.085\nset rmargin at screen 0.97\nset xlabel " << gnuplotQuoted(time_axis)
-       << "\nset key at graph 1.0,1.02 right bottom horizontal Left reverse\n"
+       << "]\nset lmargin at screen 0.085\nset rmargin at screen 0.97\nset key at graph 1.0,1.02 right bottom "
+          "horizontal Left reverse\n"
        << "set multiplot title " << gnuplotQuoted(title) << '\n';
-  const std::string style = times_s.size() < 250 ? "with linespoints pt 7 ps 0.4 lw 1.5" : "with lines lw 1.3";
+  const std::string style = times_s.size() < 250 ? "with linespoints pt 7 ps 0.4 lw 1.5" : "with lines lw 0.9";
   for (int i = 0; i < count; ++i) {
     const TimeChart& chart = charts[static_cast<std::size_t>(i)];
+    if (i + 1 == count) draw << "set xlabel " << gnuplotQuoted(time_axis) << '\n';
     const double bottom_px = kAxis_px + (kPanel_px + kAxis_px) * (count - 1 - i);
     draw << "set bmargin at screen " << bottom_px / height_px << "\nset tmargin at screen "
          << (bottom_px + kPanel_px) / height_px << "\nset yrange [" << (chart.has_signs ? "*" : "0")

@@ -25,9 +25,11 @@ std::optional<RelativeEvaluation> evaluatedRelatively(const std::vector<PosePair
 
 nlohmann::ordered_json toJson(const RelativeEvaluation& relative) {
   nlohmann::ordered_json json;
+  const bool by_metres = relative.options.unit == RelativeErrorOptions::Unit::METRES;
   json["delta"] = relative.options.delta;
+  if (!by_metres) json["delta"] = static_cast<std::size_t>(relative.options.delta);
   json["all_pairs"] = relative.options.all_pairs;
-  if (relative.options.unit == RelativeErrorOptions::Unit::METRES) {
+  if (by_metres) {
     json["way_of"] = relative.options.way_of_reference ? "reference" : "estimate";
   }
   json["pairs"] = relative.errors.size();
