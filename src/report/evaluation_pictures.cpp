@@ -119,7 +119,7 @@ GnuplotPicture trajectoryPicture(const TrajectoryEvaluation& evaluation, const s
        << "set format cb '%.3g'\nset cblabel 'position error (m)'\n"
        << "plot $poses using 2:3 with lines lw 5 lc rgb '" << kReferenceColour << "' title 'reference', "
        << "$poses using 4:5:6 with lines lw 2 lc palette notitle, "
-       << "keyentry with lines lw 2 lc rgb '#21918c' title 'estimate', "
+       << "keyentry with lines lw 2 lc rgb '#21918c' title 'estimate, coloured by its error', "
        << "$start using 1:2 with points pt 6 ps 1.6 lw 2 lc rgb '#000000' title 'start'\n";
   picture.commands = draw.str();
   picture.caption = "The paired poses; the estimate has the colour of its position error.";
