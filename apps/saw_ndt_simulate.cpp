@@ -63,9 +63,10 @@ int main(int argc, char** argv) {
   app.addOption("drive", &drive_options.drive, "N", "which drive through the scene, 1 or more");
   app.addOption("seed", &seed, "N", "of the scene and of all its drives");
   app.addOption("scans", &scans, "N", "scans at most; 0: to the end of the course or trajectory");
-  app.addOption("trajectory", &trajectory, "FILE",
-                "drive these poses (KITTI: of the camera; TUM: of the LiDAR) in x, y and heading, the scene laid along "
-                "them; height and inclination are the ground's");
+  app.addOption(
+      "trajectory", &trajectory, "FILE",
+      "drive these poses (KITTI: of the camera; TUM and CSV: of the LiDAR) in x, y and heading, the scene laid along "
+      "them; height and inclination are the ground's");
   app.addOption("times", &times, "FILE", "stamps of the poses of a KITTI trajectory (default: a turn of the LiDAR)");
   app.addOption("sensor", &sensor, "NAME", sensorHelp());
   app.addOption("mount-roll", &mounting_roll_deg, "DEGREES",

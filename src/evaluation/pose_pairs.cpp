@@ -1,12 +1,18 @@
+#include "saw_ndt/evaluation/pose_pairs.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
+#include "common/pose_interpolation.h"
 #include "saw_ndt/common/error.h"
-#include "saw_ndt/evaluation/metrics.h"
 
 namespace saw_ndt {
+
+using namespace internal;
 
 namespace {
 
@@ -42,49 +48,120 @@ void requireOnePoseAStamp(const std::vector<StampedPose>& sorted, const std::str
   }
 }
 
-const StampedPose& nearestInTime(const std::vector<StampedPose>& sorted, const StampedPose& pose) {
+std::size_t nearestInTime(const std::vector<StampedPose>& sorted, const StampedPose& pose) {
   const auto after = std::lower_bound(sorted.begin(), sorted.end(), pose, earlier);
-  if (after == sorted.begin()) return *after;
-  const auto before = std::prev(after);
-  if (after == sorted.end() || pose.stamp_s - before->stamp_s <= after->stamp_s - pose.stamp_s) return *before;
-  return *after;
+  const auto place = static_cast<std::size_t>(after - sorted.begin());
+  if (after == sorted.begin()) return place;
+  const bool nearer_before =
+      after == sorted.end() || pose.stamp_s - std::prev(after)->stamp_s <= after->stamp_s - pose.stamp_s;
+  return nearer_before ? place - 1 : place;
+}
+
+/// Where reference and estimate are close in time: their places in the two sorted trajectories.
+struct Match {
+  std::size_t reference, estimate;
+};
+
+std::vector<Match> nearestMatches(const std::vector<StampedPose>& references, const std::vector<StampedPose>& estimates,
+                                  double max_difference_s) {
+  const bool by_reference = references.size() < estimates.size();
+  const std::vector<StampedPose>& few = by_reference ? references : estimates;
+  const std::vector<StampedPose>& many = by_reference ? estimates : references;
+  std::vector<Match> matches;
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    const std::size_t nearest = nearestInTime(many, few[i]);
+    if (std::abs(many[nearest].stamp_s - few[i].stamp_s) > max_difference_s + kStampRounding_s) continue;
+    matches.push_back(by_reference ? Match{i, nearest} : Match{nearest, i});
+  }
+  return matches;
+}
+
+/// The reference at a moment, to within the rounding of stamps also at its ends.
+std::optional<Eigen::Isometry3d> referenceAt(const std::vector<StampedPose>& references, double stamp_s,
+                                             double longest_gap_s) {
+  const double first_s = references.front().stamp_s, last_s = references.back().stamp_s;
+  if (stamp_s < first_s - kStampRounding_s || stamp_s > last_s + kStampRounding_s) return std::nullopt;
+  return poseAt(references, std::clamp(stamp_s, first_s, last_s), longest_gap_s + kStampRounding_s);
+}
+
+std::string whyNone(const PairingOptions& options, const std::vector<StampedPose>& references,
+                    const std::vector<StampedPose>& estimates, std::size_t late_enough) {
+  std::ostringstream reason;
+  reason.precision(12);
+  reason << "no pose to evaluate: ";
+  if (late_enough == 0) {
+    reason << "all " << estimates.size() << " estimated poses are within the first " << options.skip_s
+           << " s, which are skipped";
+    return reason.str();
+  }
+  std::ostringstream stamps;
+  stamps.precision(12);
+  stamps << " (" << references.front().stamp_s << " to " << references.back().stamp_s << " s) ";
+  if (options.interpolate) {
+    reason << "no two reference stamps" << stamps.str() << "at most " << options.longest_gap_s
+           << " s apart are around an estimated one (";
+  } else {
+    reason << "no reference stamp" << stamps.str() << "is within " << options.max_difference_s
+           << " s of an estimated one (";
+  }
+  reason << estimates.front().stamp_s << " to " << estimates.back().stamp_s << " s, ";
+  if (options.offset_s != 0.0) reason << "the offset of " << options.offset_s << " s added, ";
+  reason << "the first " << options.skip_s << " s skipped)";
+  return reason.str();
 }
 
 }  // namespace
 
-std::vector<PosePair> matchTrajectories(const std::vector<StampedPose>& reference,
-                                        const std::vector<StampedPose>& estimate, double skip_s) {
+void PairingOptions::check() const {
   checkOption(skip_s >= 0.0 && std::isfinite(skip_s), "skip_s", skip_s, "0 or greater");
+  checkOption(max_difference_s >= 0.0 && std::isfinite(max_difference_s), "max_difference_s", max_difference_s,
+              "0 or greater");
+  checkOption(std::isfinite(offset_s), "offset_s", offset_s, "a finite number");
+  checkOption(longest_gap_s > 0.0 && std::isfinite(longest_gap_s), "longest_gap_s", longest_gap_s, "positive");
+}
+
+PairedTrajectories pairTrajectories(const std::vector<StampedPose>& reference, const std::vector<StampedPose>& estimate,
+                                    const PairingOptions& options) {
+  options.check();
   const std::vector<StampedPose> references = sortedByStamp(reference, "reference");
-  const std::vector<StampedPose> estimates = sortedByStamp(estimate, "estimated");
+  std::vector<StampedPose> estimates = sortedByStamp(estimate, "estimated");
   requireOnePoseAStamp(references, "reference");
   requireOnePoseAStamp(estimates, "estimated");
-  const double first_evaluated_s = estimates.front().stamp_s + skip_s - kStampRounding_s;
+  for (StampedPose& pose : estimates) pose.stamp_s += options.offset_s;
 
-  std::vector<PosePair> pairs;
-  std::size_t late_enough = 0;
-  for (const StampedPose& pose : estimates) {
-    if (pose.stamp_s < first_evaluated_s) continue;
-    ++late_enough;
-    const StampedPose& nearest = nearestInTime(references, pose);
-    if (std::abs(nearest.stamp_s - pose.stamp_s) > kStampTolerance_s + kStampRounding_s) continue;
-    pairs.push_back({pose.stamp_s, nearest.T_map_body, pose.T_map_body});
-  }
-  if (pairs.empty()) {
-    std::ostringstream reason;
-    reason.precision(12);
-    reason << "no pose to evaluate: ";
-    if (late_enough == 0) {
-      reason << "all " << estimates.size() << " estimated poses are within the first " << skip_s
-             << " s, which are skipped";
-    } else {
-      reason << "no reference stamp (" << references.front().stamp_s << " to " << references.back().stamp_s
-             << " s) is within " << kStampTolerance_s << " s of an estimated one (" << estimates.front().stamp_s
-             << " to " << estimates.back().stamp_s << " s, the first " << skip_s << " s skipped)";
+  const double first_evaluated_s = estimates.front().stamp_s + options.skip_s - kStampRounding_s;
+  const auto isEvaluated = [&](const StampedPose& pose) { return pose.stamp_s >= first_evaluated_s; };
+  PairedTrajectories result;
+  result.reference_poses = references.size();
+  result.estimate_poses = static_cast<std::size_t>(std::count_if(estimates.begin(), estimates.end(), isEvaluated));
+  if (options.interpolate) {
+    for (const StampedPose& pose : estimates) {
+      if (!isEvaluated(pose)) continue;
+      const auto T_map_reference = referenceAt(references, pose.stamp_s, options.longest_gap_s);
+      if (T_map_reference) result.pairs.push_back({pose.stamp_s, *T_map_reference, pose.T_map_body});
     }
-    throw std::invalid_argument(reason.str());
+    result.paired_estimates = result.pairs.size();
+  } else {
+    std::optional<std::size_t> last;
+    for (const Match& match : nearestMatches(references, estimates, options.max_difference_s)) {
+      const StampedPose& pose = estimates[match.estimate];
+      if (!isEvaluated(pose)) continue;
+      result.pairs.push_back({pose.stamp_s, references[match.reference].T_map_body, pose.T_map_body});
+      if (last != match.estimate) ++result.paired_estimates;
+      last = match.estimate;
+    }
   }
-  return pairs;
+  if (result.pairs.empty()) {
+    throw std::invalid_argument(whyNone(options, references, estimates, result.estimate_poses));
+  }
+  return result;
+}
+
+std::vector<PosePair> matchTrajectories(const std::vector<StampedPose>& reference,
+                                        const std::vector<StampedPose>& estimate, double skip_s) {
+  PairingOptions options;
+  options.skip_s = skip_s;
+  return pairTrajectories(reference, estimate, options).pairs;
 }
 
 }  // namespace saw_ndt

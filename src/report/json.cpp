@@ -17,6 +17,19 @@ nlohmann::ordered_json toJson(const KittiRelativeErrors& errors) {
           {"kitti_rotation_deg_per_m", errors.rotation_deg_per_m}};
 }
 
+nlohmann::ordered_json toJson(const ErrorStatistics& statistics) {
+  return {{"rmse", statistics.rmse}, {"mean", statistics.mean}, {"median", statistics.median}, {"std", statistics.std},
+          {"min", statistics.min},   {"max", statistics.max},   {"sse", statistics.sse}};
+}
+
+nlohmann::ordered_json toJson(const PoseErrorStatistics& statistics, const std::string& prefix) {
+  nlohmann::ordered_json json;
+  json[prefix + "translation_m"] = toJson(statistics.translation_m);
+  json[prefix + "rotation_deg"] = toJson(statistics.rotation_deg);
+  json[prefix + "full"] = toJson(statistics.full);
+  return json;
+}
+
 nlohmann::ordered_json toJson(const internal::DurationStatistics& durations) {
   return {{"mean", durations.mean}, {"p50", durations.p50}, {"p95", durations.p95}, {"max", durations.max}};
 }

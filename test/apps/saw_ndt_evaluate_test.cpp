@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "real_data.h"
+#include "report/gnuplot.h"
 #include "run_app_program.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/io/trajectory.h"
@@ -75,6 +78,150 @@ TEST_F(EvaluateApp, AgreesWithEvosAbsolutePoseError) {
   }
 }
 
+// The same drive as above in CSV, by names and in another order.
+TEST_F(EvaluateApp, CsvIsTaken) {
+  const std::string csv = file("est.csv",
+                               "#timestamp [ns], p_x [m], p_y [m], p_z [m], q_w [], q_x [], q_y [], q_z []\n"
+                               "0,9,9,0,1,0,0,0\n4000000000,1,3,0,1,0,0,0\n"
+                               "5000000000,6,3,0,0.70710678118655,0,0,0.70710678118655\n");
+  const AppResult expected = run(tum_reference + tum_estimate + "-json");
+  EXPECT_EQ(run(tum_reference + csv + "-json").output, expected.output);
+  EXPECT_NE(run(csv + kitti_estimate).errors.find("-times FILE"), std::string::npos);
+  EXPECT_EQ(run(csv + kitti_estimate + times + calib).exit_code, 0);
+}
+
+// The estimate of each is the reference turned by a quarter to the left about the vertical and moved: the LiDAR's by
+// (5, 6, 7), the camera's by (3, 4, 5). Its errors are (5, 6, 7), (4, 7, 7), (3, 8, 7) and (2, 7, 7) m for the LiDAR.
+TEST_F(EvaluateApp, AlignmentTakesOffATransform) {
+  const std::string tum =
+      file("r.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n3 2 1 0 0 0 0 1\n") +
+      file("e.tum",
+           "0 5 6 7 0 0 0.70710678118655 0.70710678118655\n1 5 7 7 0 0 0.70710678118655 0.70710678118655\n"
+           "2 5 8 7 0 0 0.70710678118655 0.70710678118655\n3 4 8 7 0 0 0.70710678118655 0.70710678118655\n");
+  const std::string kitti =
+      file("r.kitti",
+           "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1\n1 0 0 0 0 1 0 0 0 0 1 2\n1 0 0 1 0 1 0 0 0 0 1 2\n") +
+      file("e.kitti",
+           "0 0 1 3 0 1 0 4 -1 0 0 5\n0 0 1 4 0 1 0 4 -1 0 0 5\n0 0 1 5 0 1 0 4 -1 0 0 5\n0 0 1 5 0 1 0 4 -1 0 0 4\n");
+  for (const std::string& files : {tum, kitti, kitti + calib}) {
+    for (const std::string alignment : {"origin", "yaw", "se3"}) {
+      SCOPED_TRACE(files + alignment);
+      const AppResult result = run(files + "-skip 0 -json -align " + alignment);
+      ASSERT_EQ(result.exit_code, 0) << result.errors;
+      const auto report = nlohmann::json::parse(result.output);
+      EXPECT_EQ(report.at("align"), alignment);
+      EXPECT_EQ(report.at("evaluated_scans"), 4);
+      EXPECT_NEAR(report.at("ate_rmse_m").get<double>(), 0.0, 1e-9);
+      EXPECT_NEAR(report.at("yaw_p95_deg").get<double>(), 0.0, 1e-9);
+      EXPECT_NEAR(report.at("ape_full").at("max").get<double>(), 0.0, 1e-9);
+    }
+  }
+  const auto report = nlohmann::json::parse(run(tum + "-skip 0 -json").output);
+  EXPECT_EQ(report.at("align"), "none");
+  EXPECT_EQ(report.count("align_transform"), 0U);
+  EXPECT_NEAR(report.at("ape_translation_m").at("sse").get<double>(), 110.0 + 114.0 + 122.0 + 102.0, 1e-9);
+  EXPECT_NEAR(report.at("ape_translation_m").at("rmse").get<double>(), std::sqrt(112.0), 1e-9);
+  EXPECT_NEAR(report.at("ape_translation_m").at("min").get<double>(), std::sqrt(102.0), 1e-9);
+  EXPECT_NEAR(report.at("ape_rotation_deg").at("std").get<double>(), 0.0, 1e-6);
+  EXPECT_NEAR(report.at("ape_rotation_deg").at("median").get<double>(), 90.0, 1e-9);
+  EXPECT_NEAR(report.at("ape_full").at("max").get<double>(), std::sqrt(122.0 + 4.0), 1e-9);
+  const auto aligned = nlohmann::json::parse(run(tum + "-skip 0 -json -align yaw").output).at("align_transform");
+  EXPECT_NEAR(aligned.at("yaw_deg").get<double>(), -90.0, 1e-9);
+  EXPECT_NEAR(aligned.at("x_m").get<double>(), -6.0, 1e-9);
+  EXPECT_NEAR(aligned.at("y_m").get<double>(), 5.0, 1e-9);
+}
+
+// The estimate has stamps 0.5 s behind and twice as many poses: 0, 0, 1, 1, 2, 2, 3 m off the way of 2 m/s.
+TEST_F(EvaluateApp, OffsetAndInterpolation) {
+  const std::string files =
+      file("r.tum", "10 0 0 0 0 0 0 1\n11 2 0 0 0 0 0 1\n12 4 0 0 0 0 0 1\n15 10 0 0 0 0 0 1\n") +
+      file("e.tum",
+           "9.5 0 0 0 0 0 0 1\n10 1 0 0 0 0 0 1\n10.5 2 1 0 0 0 0 1\n11 3 1 0 0 0 0 1\n11.5 4 2 0 0 0 0 1\n"
+           "12 5 2 0 0 0 0 1\n12.5 6 3 0 0 0 0 1\n");
+  const struct {
+    std::string arguments;
+    std::size_t evaluated;
+    double share, mean_m, max_m;
+  } cases[] = {
+      {"-offset 0.5", 3, 3.0 / 7.0, 1.0, 2.0},
+      {"-offset 0.499 -max-difference 0.002", 3, 3.0 / 7.0, 1.0, 2.0},
+      {"-offset 0.5 -interpolate", 5, 5.0 / 7.0, 4.0 / 5.0, 2.0},
+      {"-offset 0.5 -interpolate -longest-gap 3", 7, 1.0, 9.0 / 7.0, 3.0},
+      {"-max-difference 0.01", 3, 3.0 / 7.0, 0.0, 0.0},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.arguments);
+    const AppResult result = run(files + "-skip 0 -json " + c.arguments);
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const auto report = nlohmann::json::parse(result.output);
+    EXPECT_EQ(report.at("evaluated_scans"), c.evaluated);
+    EXPECT_EQ(report.at("estimate_poses"), 7);
+    EXPECT_EQ(report.at("reference_poses"), 4);
+    EXPECT_NEAR(report.at("paired_share").get<double>(), c.share, 1e-12);
+    EXPECT_EQ(report.at("interpolated"), c.arguments.find("-interpolate") != std::string::npos);
+    EXPECT_EQ(result.errors.empty(), c.share > 0.5) << result.errors;
+    if (c.max_m == 0.0) continue;
+    EXPECT_NEAR(report.at("position_mean_m").get<double>(), c.mean_m, 1e-9);
+    EXPECT_NEAR(report.at("position_max_m").get<double>(), c.max_m, 1e-9);
+  }
+}
+
+// The estimate goes 1.5 m a frame where the reference goes 1 m.
+TEST_F(EvaluateApp, RelativeErrors) {
+  std::string reference, estimate;
+  for (int i = 0; i < 9; ++i) {
+    reference += std::to_string(i) + ' ' + std::to_string(i) + " 0 0 0 0 0 1\n";
+    estimate += std::to_string(i) + ' ' + std::to_string(1.5 * i) + " 0 0 0 0 0 1\n";
+  }
+  const std::string files = file("r.tum", reference) + file("e.tum", estimate) + "-skip 0 -json ";
+  const auto reportOf = [&](const std::string& arguments) {
+    const AppResult result = run(files + arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return nlohmann::json::parse(result.output);
+  };
+  const auto frames = reportOf("-relative-frames 3");
+  EXPECT_EQ(frames.count("rpe_metres"), 0U);
+  EXPECT_EQ(frames.at("rpe_frames").at("delta"), 3);
+  EXPECT_EQ(frames.at("rpe_frames").at("pairs"), 2);
+  EXPECT_NEAR(frames.at("rpe_frames").at("translation_m").at("rmse").get<double>(), 1.5, 1e-12);
+  EXPECT_NEAR(frames.at("rpe_frames").at("translation_m").at("sse").get<double>(), 4.5, 1e-12);
+  EXPECT_NEAR(frames.at("rpe_frames").at("rotation_deg").at("max").get<double>(), 0.0, 1e-12);
+  // 4 m are three steps of the estimate and four of the reference.
+  const auto both = reportOf("-relative-frames 3 -relative-metres 4");
+  EXPECT_EQ(both.at("rpe_frames"), frames.at("rpe_frames"));
+  const auto metres = reportOf("-relative-metres 4").at("rpe_metres");
+  EXPECT_EQ(metres.at("pairs"), 1);
+  EXPECT_EQ(metres.at("way_of"), "estimate");
+  EXPECT_NEAR(metres.at("translation_m").at("mean").get<double>(), 1.5, 1e-12);
+  const auto of_reference = reportOf("-relative-metres 4 -way-of-reference").at("rpe_metres");
+  EXPECT_EQ(of_reference.at("pairs"), 1);
+  EXPECT_EQ(of_reference.at("way_of"), "reference");
+  EXPECT_NEAR(of_reference.at("translation_m").at("mean").get<double>(), 2.0, 1e-12);
+  // From every pose, 4.5 m is too far from 4 m.
+  const auto all = reportOf("-relative-metres 4 -all-pairs -relative-tolerance 0.2").at("rpe_metres");
+  EXPECT_EQ(all.at("pairs"), 6);
+  EXPECT_EQ(all.at("all_pairs"), true);
+  EXPECT_EQ(run(files + "-relative-metres 4 -all-pairs").exit_code, 1);
+}
+
+TEST_F(EvaluateApp, DrawsPictures) {
+  if (!gnuplotFound()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::filesystem::path pictures = folder.path() / "new" / "pictures";
+  const AppResult result = run(tum_reference + tum_estimate +
+                               "-skip 0 -relative-frames 1 -relative-metres 0.5 -plot '" + pictures.string() + "'");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  for (const std::string name :
+       {"trajectories", "position_error", "yaw_error", "relative_error_frames", "relative_error_metres"}) {
+    for (const std::string ending : {".png", ".svg"}) {
+      EXPECT_GT(std::filesystem::file_size(pictures / (name + ending)), 1000U) << name << ending;
+    }
+  }
+  // A single pose of no error has no extent.
+  const std::string one = file("one.tum", "0 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(run(one + one + "-skip 0 -plot '" + (pictures / "one").string() + "'").errors, "");
+}
+
 TEST_F(EvaluateApp, OddStampsAreSaid) {
   std::string seconds, nanoseconds, equal, rounded, standing, falling;
   for (int i = 0; i < 8; ++i) {
@@ -124,6 +271,11 @@ TEST_F(EvaluateApp, PrintsText) {
   const AppResult result = run(tum_reference + tum_estimate);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("evaluated_scans           2\n"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("align                     none\n"), std::string::npos) << result.output;
+  EXPECT_NE(
+      result.output.find("ape_translation_m         rmse 4.12311  mean 4  median 4  std 1  min 3  max 5  sse 34\n"),
+      std::string::npos)
+      << result.output;
 }
 
 TEST_F(EvaluateApp, KittiFilesAloneAreComparedLineByLine) {
@@ -141,6 +293,17 @@ TEST_F(EvaluateApp, SaysWhatIsWrong) {
   } cases[] = {
       {tum_reference, 2, "missing ESTIMATE"},
       {tum_reference + tum_estimate + "-skip -1", 2, "-skip"},
+      {tum_reference + tum_estimate + "-max-difference -1", 2, "-max-difference"},
+      {tum_reference + tum_estimate + "-interpolate -longest-gap 0", 2, "-longest-gap"},
+      {tum_reference + tum_estimate + "-longest-gap 2", 2, "-longest-gap"},
+      {tum_reference + tum_estimate + "-interpolate -max-difference 1", 2, "exclude each other"},
+      {tum_reference + tum_estimate + "-all-pairs", 2, "-all-pairs"},
+      {tum_reference + tum_estimate + "-relative-frames 1.5", 2, "-relative-frames: delta = 1.5"},
+      {tum_reference + tum_estimate + "-relative-metres -1", 2, "-relative-metres: delta = -1"},
+      {tum_reference + tum_estimate + "-relative-metres 50", 1, "no two of the 2 poses are 50 m apart"},
+      {tum_reference + tum_estimate + "-align sim3", 2, "-align"},
+      {tum_reference + tum_estimate + "-align se3", 1, "the 2 pairs are the same or on one line"},
+      {kitti_reference + kitti_estimate + "-offset 1", 2, "-times FILE"},
       {kitti_reference + tum_estimate, 2, "-times FILE"},
       {kitti_reference + tum_estimate + times, 2, "-calib FILE"},
       {kitti_reference + shorter, 1, "short.kitti: 1 poses, where"},
