@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache
   libpcl-dev libeigen3-dev libboost-dev libboost-filesystem-dev libboost-program-options-dev libboost-system-dev zlib1g-dev
-  nlohmann-json3-dev libhwy-dev libembree-dev
+  nlohmann-json3-dev libhwy-dev libembree-dev libpcap-dev
   libgtest-dev libbenchmark-dev
   gnuplot-nox
 )
