@@ -4,9 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "drives/followed_folder.h"
+#include "drives/live_address.h"
+#include "drives/velodyne_socket.h"
 #include "saw_ndt/io/trajectory.h"
 
 namespace saw_ndt {
@@ -37,6 +40,14 @@ void Interruption::onFirst(std::function<void()> call) {
   });
 }
 
+namespace {
+
+std::optional<internal::LiveAddress> parseUdp(const LocalizeArguments& arguments) {
+  return checkedUsage([&] { return internal::parseUdpAddress(arguments.sequence); });
+}
+
+}  // namespace
+
 std::vector<ScanPoints> LiveScans::waitForFirst() {
   constexpr std::size_t kScans = 5;
   std::vector<ScanPoints> points;
@@ -65,11 +76,14 @@ bool LiveScans::next(RecordedScan& scan) {
   return true;
 }
 
-bool isLive(const LocalizeArguments& arguments) { return arguments.follow; }
+bool isLive(const LocalizeArguments& arguments) { return arguments.follow || parseUdp(arguments).has_value(); }
 
 std::unique_ptr<LiveSource> openLive(const LocalizeArguments& arguments) {
-  return internal::followFolder(arguments.sequence, arguments.recording.binFields(),
-                                static_cast<std::size_t>(arguments.max_waiting));
+  const auto max_waiting = static_cast<std::size_t>(arguments.max_waiting);
+  if (const auto udp = parseUdp(arguments)) {
+    return internal::listenToVelodyne(udp->address, udp->port, arguments.recording.velodyneCalibration(), max_waiting);
+  }
+  return internal::followFolder(arguments.sequence, arguments.recording.binFields(), max_waiting);
 }
 
 }  // namespace saw_ndt

@@ -30,11 +30,12 @@ std::optional<MotionCompensation> MotionArgument::stated() const {
   return std::nullopt;
 }
 
-MotionTrial MotionArgument::decide(const AppOptions& app, ScanSource& scans,
+MotionTrial MotionArgument::decide(const AppOptions& app, const Recording& recording, const std::vector<int>& selected,
                                    const std::function<MotionTrial()>& trial) const {
   const std::optional<MotionCompensation> value = stated();
+  if (!value && recording.isRaw()) return {MotionCompensation::FROM_TIMES, "scans are as the sensor sent them"};
   if (!value) return trial();
-  if (*value == MotionCompensation::OFF && firstHasTimes(scans)) {
+  if (*value == MotionCompensation::OFF && firstHasTimes(*recording.scans(selected))) {
     const MotionTrial tried = trial();
     if (tried.compensation != MotionCompensation::OFF) {
       warn(app, "-motion-compensation off, but scans look skewed by the motion of the LiDAR: " + tried.reason);
@@ -47,7 +48,7 @@ MotionTrial MotionArgument::decideLive(const std::vector<ScanPoints>& first) con
   if (const std::optional<MotionCompensation> value = stated()) return {*value, "as stated"};
   const bool have_times =
       std::any_of(first.begin(), first.end(), [](const ScanPoints& scan) { return !scan.times_s.empty(); });
-  if (have_times) return {MotionCompensation::FROM_TIMES, "scans come from the sensor, with times of their points"};
+  if (have_times) return {MotionCompensation::FROM_TIMES, "scans are as the sensor sent them"};
   return {MotionCompensation::OFF, "scans come from a live source, and their points have no times"};
 }
 

@@ -23,6 +23,8 @@ class RecordingArgument {
   /// Opens a recording. @throws Error, UsageError
   std::unique_ptr<Recording> open(const std::string& path) const;
 
+  /// -velodyne-calibration, empty where it is not given.
+  const std::string& velodyneCalibration() const { return velodyne_calibration_; }
   /// -bin-fields, 0 where it is not given.
   int binFields() const { return bin_fields_.value(); }
 

@@ -22,7 +22,7 @@ constexpr char kDescription[] =
 std::string setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt::MotionArgument& argument,
                                   const saw_ndt::Recording& recording, const std::vector<int>& selected,
                                   saw_ndt::DriveMapOptions& options) {
-  const saw_ndt::MotionTrial motion = argument.decide(app, *recording.scans(selected), [&] {
+  const saw_ndt::MotionTrial motion = argument.decide(app, recording, selected, [&] {
     if (!recording.hasStamps()) {
       return saw_ndt::MotionTrial{saw_ndt::MotionCompensation::OFF, "scans have no stamps"};
     }

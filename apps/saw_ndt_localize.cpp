@@ -72,7 +72,7 @@ void localizeRecording(const saw_ndt::AppOptions& app, const saw_ndt::LocalizeAr
                                            {options.T_base_lidar.linear(), target.origin().segmentation});
   }
   options.scan_period_s = recording->scanPeriod();
-  const saw_ndt::MotionTrial motion = arguments.motion.decide(app, *openScans(), [&] {
+  const saw_ndt::MotionTrial motion = arguments.motion.decide(app, *recording, selected, [&] {
     return saw_ndt::tryMotionCompensation(target, options, T_map_base_initial, *openScans());
   });
   options.motion_compensation = motion.compensation;

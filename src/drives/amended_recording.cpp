@@ -23,6 +23,7 @@ class AmendedRecording : public Recording {
   int scanCount() const override { return recording_->scanCount(); }
   std::string scanName(int scan) const override { return recording_->scanName(scan); }
   void readScan(int scan, ScanPoints& points) const override { recording_->readScan(scan, points); }
+  bool isRaw() const override { return recording_->isRaw(); }
   bool hasStamps() const override { return recording_->hasStamps(); }
   const std::vector<double>& stamps() const override { return recording_->stamps(); }
   std::string stampsPlace() const override { return recording_->stampsPlace(); }

@@ -6,6 +6,10 @@
 #include "drives/amended_recording.h"
 #include "drives/kitti_raw_drive.h"
 #include "drives/scan_folder.h"
+#if SAW_NDT_HAS_PCAP
+#include "drives/velodyne_capture.h"
+#endif
+#include "io/capture_magic.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "saw_ndt/drives/recording.h"
@@ -38,9 +42,18 @@ std::unique_ptr<Recording> openKittiOdometry(const fs::path& path, const Recordi
   return withReferencePoses(std::move(sequence), poses);
 }
 
+std::unique_ptr<Recording> openCapture(const fs::path& path, [[maybe_unused]] const RecordingOptions& options) {
+#if SAW_NDT_HAS_PCAP
+  return openVelodyneCapture(path, options);
+#else
+  throw Error(path.string(), "", "is a capture, which this was built without reading: libpcap-dev was missing");
+#endif
+}
+
 /// A recording with the reference poses that lie beside it.
 std::unique_ptr<Recording> openWithOwnPoses(const fs::path& path, const RecordingOptions& options) {
   if (isKittiRawDrive(path)) return openKittiRawDrive(path, options);
+  if (fs::is_regular_file(path) && isCapture(path)) return openCapture(path, options);
   if (isKittiTrackingSequence(path)) return openKittiTrackingSequence(path, options);
   const fs::path scans = fs::is_directory(path / "velodyne") ? path / "velodyne" : path;
   if (!fs::is_directory(scans) && !isScanFile(scans)) {

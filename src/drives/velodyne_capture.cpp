@@ -112,6 +112,7 @@ class VelodyneCapture : public Recording {
 
   void readScan(int scan, ScanPoints& points) const override;
 
+  bool isRaw() const override { return true; }
   bool hasStamps() const override { return true; }
   const std::vector<double>& stamps() const override { return stamps_s_; }
   std::string stampsPlace() const override { return path().string(); }

@@ -8,6 +8,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -56,8 +57,12 @@ udp::socket listeningSocket(asio::io_context& context, const std::string& addres
 
 class VelodyneSocket : public LiveSource {
  public:
-  VelodyneSocket(const std::string& address, std::uint16_t port, const std::filesystem::path& calibration)
-      : stream_(calibration), socket_(listeningSocket(context_, address, port)), pause_(context_) {
+  VelodyneSocket(const std::string& address, std::uint16_t port, const std::filesystem::path& calibration,
+                 std::size_t max_waiting)
+      : stream_(calibration),
+        socket_(listeningSocket(context_, address, port)),
+        pause_(context_),
+        max_waiting_(max_waiting) {
     receive();
     thread_ = std::thread([this] { run(); });
   }
@@ -72,13 +77,13 @@ class VelodyneSocket : public LiveSource {
 
   bool next(RecordedScan& scan) override {
     std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [this] { return is_stopped_ || failure_ || has_newest_; });
+    changed_.wait(lock, [this] { return is_stopped_ || failure_ || !waiting_.empty(); });
     if (is_stopped_) return false;
     if (failure_) std::rethrow_exception(failure_);
-    has_newest_ = false;
-    std::swap(static_cast<ScanPoints&>(scan), newest_.points);
-    scan.stamp_s = newest_.stamp_s;
-    scan.number = newest_number_;
+    std::swap(static_cast<ScanPoints&>(scan), waiting_.front().points);
+    scan.stamp_s = waiting_.front().stamp_s;
+    scan.number = next_number_ - static_cast<int>(waiting_.size());
+    waiting_.pop_front();
     lock.unlock();
     scan.name = "scan " + std::to_string(scan.number);
     scan.T_map_lidar.reset();
@@ -146,10 +151,12 @@ class VelodyneSocket : public LiveSource {
   void hand(StreamedScan& scan) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (has_newest_) ++left_out_;
-      std::swap(newest_, scan);
-      newest_number_ = next_number_++;
-      has_newest_ = true;
+      waiting_.push_back(std::move(scan));
+      ++next_number_;
+      if (waiting_.size() > max_waiting_) {
+        left_out_ += waiting_.size() - 1;
+        waiting_.erase(waiting_.begin(), waiting_.end() - 1);
+      }
     }
     changed_.notify_all();
   }
@@ -164,7 +171,6 @@ class VelodyneSocket : public LiveSource {
   udp::endpoint sender_;
   std::optional<udp::endpoint> sensor_;
   Clock::time_point last_taken_;
-  int next_number_ = 0;
 
   std::atomic<std::size_t> rejected_{0};
   mutable std::mutex mutex_;
@@ -172,9 +178,9 @@ class VelodyneSocket : public LiveSource {
   // By the mutex.
   bool is_stopped_ = false;
   std::exception_ptr failure_;
-  bool has_newest_ = false;
-  StreamedScan newest_;
-  int newest_number_ = 0;
+  std::size_t max_waiting_;
+  std::deque<StreamedScan> waiting_;
+  int next_number_ = 0;  // of the scan that comes next: those that wait have the ones before
   std::size_t left_out_ = 0;
 
   std::thread thread_;
@@ -183,8 +189,8 @@ class VelodyneSocket : public LiveSource {
 }  // namespace
 
 std::unique_ptr<LiveSource> listenToVelodyne(const std::string& address, std::uint16_t port,
-                                             const std::filesystem::path& calibration) {
-  return std::make_unique<VelodyneSocket>(address, port, calibration);
+                                             const std::filesystem::path& calibration, std::size_t max_waiting) {
+  return std::make_unique<VelodyneSocket>(address, port, calibration, max_waiting);
 }
 
 }  // namespace saw_ndt::internal

@@ -32,6 +32,10 @@ class SAW_NDT_EXPORT Recording {
   /// may bring along. Throws Error.
   virtual void readScan(int scan, ScanPoints& points) const = 0;
 
+  /// Whether scans are known to be as the sensor measured them, one point after the other, with the times of points:
+  /// the motion of the LiDAR is in them.
+  virtual bool isRaw() const { return false; }
+
   /// Whether it says when scans were taken.
   virtual bool hasStamps() const = 0;
   /// The stamp (s) of every scan. Throws Error where there are none, or too few.
