@@ -7,7 +7,7 @@ packages=(
   build-essential cmake ninja-build ccache
   libpcl-dev libeigen3-dev libboost-dev libboost-filesystem-dev libboost-program-options-dev libboost-system-dev zlib1g-dev
   nlohmann-json3-dev libhwy-dev libembree-dev libpcap-dev
-  libgtest-dev libbenchmark-dev
+  libgtest-dev libbenchmark-dev python3
   gnuplot-nox
 )
 

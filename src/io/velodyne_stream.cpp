@@ -1,5 +1,7 @@
 #include "io/velodyne_stream.h"
 
+#include <pcl/console/print.h>
+
 namespace saw_ndt::internal {
 
 VelodyneStream::VelodyneStream(const std::filesystem::path& calibration) {
@@ -8,10 +10,17 @@ VelodyneStream::VelodyneStream(const std::filesystem::path& calibration) {
 
 bool VelodyneStream::isTaken(const std::uint8_t* payload, std::size_t size) {
   const std::optional<VelodyneProduct> product = velodyneProduct(payload, size);
-  if (!product || !product->model) return false;
+  if (!product) return false;
+  if (!product->model) {
+    warnOnce(unreadProduct(product->id));
+    return false;
+  }
   if (lasers_ != nullptr) return *product->model == lasers_->model();
   if (*product->model == VelodyneModel::HDL_64E) {
-    if (!calibrated_) return false;
+    if (!calibrated_) {
+      warnOnce("data packets of an HDL-64E, which cannot be read without its calibration (db.xml)");
+      return false;
+    }
     lasers_ = &*calibrated_;
   } else {
     if (!uncalibrated_ || uncalibrated_->model() != *product->model) uncalibrated_.emplace(*product->model);
@@ -19,6 +28,11 @@ bool VelodyneStream::isTaken(const std::uint8_t* payload, std::size_t size) {
   }
   turns_.emplace(*product->model);
   return true;
+}
+
+void VelodyneStream::warnOnce(const std::string& reason) {
+  if (!has_warned_) PCL_WARN("Velodyne: %s\n", reason.c_str());
+  has_warned_ = true;
 }
 
 void VelodyneStream::restart() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "io/velodyne_lasers.h"
 #include "io/velodyne_turns.h"
@@ -18,7 +19,8 @@ struct StreamedScan {
   double stamp_s = 0.0;
 };
 
-/// Puts the scans of a stream of packets of one Velodyne together. Its memory is bounded, whatever comes.
+/// Puts the scans of a stream of packets of one Velodyne together. Its memory is bounded, whatever comes. Of the first
+/// packet of a Velodyne that is not read it warns.
 class SAW_NDT_EXPORT VelodyneStream {
  public:
   /// @param calibration  of an HDL-64E; empty: there is none, and such a sensor's packets are not taken
@@ -47,6 +49,7 @@ class SAW_NDT_EXPORT VelodyneStream {
 
  private:
   bool isTaken(const std::uint8_t* payload, std::size_t size);
+  void warnOnce(const std::string& reason);
   void begin(double stamp_s);
   void finish();
 
@@ -55,6 +58,7 @@ class SAW_NDT_EXPORT VelodyneStream {
   const VelodyneLasers* lasers_ = nullptr;  // one of these, of the sensor that sends
   std::optional<VelodyneTurns> turns_;
   StreamedScan scan_;
+  bool has_warned_ = false;
 };
 
 }  // namespace saw_ndt::internal

@@ -82,7 +82,6 @@ def packet_bytes(blocks, time_us):
 def sensor_packets(scans, stamps_s):
     """Yields (time in s, packet) of the firings of a VLP-16 from the first stamp to the last one."""
     firing, scan, lasers, blocks, begin_s = 0, 0, read_scan(scans[0]), [], stamps_s[0]
-    half_step = None
     while True:
         time_s = stamps_s[0] + 1e-6 * FIRING_US * firing
         while time_s >= stamps_s[scan + 1]:
@@ -122,7 +121,8 @@ def exact_packets(scans, stamps_s):
         for first in range(0, TURN, FIRINGS_PER_PACKET):
             blocks = []
             for azimuth in range(first, first + FIRINGS_PER_PACKET, 2):
-                blocks.append((azimuth, [returns.get((azimuth + i, laser), (0, 0)) for i in range(2) for laser in range(16)]))
+                keys = [(azimuth + i, laser) for i in range(2) for laser in range(16)]
+                blocks.append((azimuth, [returns.get(key, (0, 0)) for key in keys]))
             time_s = stamps_s[scan] + period_s * first / TURN
             yield time_s, packet_bytes(blocks, round(time_s * 1e6))
 

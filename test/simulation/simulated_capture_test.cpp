@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <future>
 
 #include "drives/velodyne_capture.h"
+#include "drives/velodyne_socket.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/drives/kitti_sequence.h"
 #include "short_drive.h"
@@ -141,6 +145,40 @@ TEST_F(SimulatedCapture, HasEvenStampsWhereTheNetworkIsLateAndTheSensorWithoutGp
   for (int number = 1; number < kScans; ++number) {
     EXPECT_NEAR(drive->stamps()[static_cast<std::size_t>(number)], kBegin_s + 0.1 * number, 1e-3);
   }
+}
+
+TEST_F(SimulatedCapture, IsTheSameWhereItIsReplayedToALiveSource) {
+  const auto drive = capture("");
+  ASSERT_TRUE(drive);
+  boost::asio::io_context context;
+  boost::asio::ip::udp::socket any_free(context, {boost::asio::ip::make_address("127.0.0.1"), 0});
+  const std::uint16_t port = any_free.local_endpoint().port();
+  any_free.close();
+  const auto source = internal::listenToVelodyne("127.0.0.1", port);
+  const auto replaying = std::async(std::launch::async, [&] {
+    const std::string command = std::string("python3 " SAW_NDT_SOURCE_DIR "/test/recordings/replay_capture.py ") +
+                                drive->path().string() + " " + std::to_string(port);
+    if (std::system(command.c_str()) != 0) source->stop();
+  });
+  RecordedScan live;
+  ScanPoints captured;
+  // The last scan ends with the capture, which a live source does not know of.
+  for (int number = 0; number + 1 < kScans; ++number) {
+    if (!source->next(live)) break;
+    drive->readScan(number, captured);
+    EXPECT_EQ(live.number, number);
+    EXPECT_EQ(live.rings, captured.rings);
+    ASSERT_EQ(live.points.size(), captured.points.size());
+    const double apart_s = live.stamp_s - drive->stamps()[static_cast<std::size_t>(number)];
+    for (std::size_t i = 0; i < live.points.size(); ++i) {
+      ASSERT_EQ(positionOf(live.points[i]), positionOf(captured.points[i]));
+      ASSERT_NEAR(live.times_s[i] - captured.times_s[i], apart_s, 1e-6);
+    }
+  }
+  replaying.wait();
+  EXPECT_EQ(source->leftOut(), 0U);
+  EXPECT_EQ(source->rejected(), 0U);
+  EXPECT_EQ(live.number, kScans - 2);
 }
 
 }  // namespace
