@@ -1,3 +1,4 @@
+#include <iostream>
 #include <optional>
 
 #include "app_options.h"
@@ -98,6 +99,7 @@ void localizeLive(const saw_ndt::AppOptions& app, const saw_ndt::LocalizeArgumen
   saw_ndt::LocalizeRun run(app, arguments);
   source = saw_ndt::openLive(arguments);
   interruption.onFirst([&] { source->stop(); });
+  std::cerr << app.name() << ": waiting for scans of " << arguments.sequence << "; SIGINT (Ctrl-C) or SIGTERM ends\n";
 
   saw_ndt::LiveScans scans(*source);
   const std::vector<saw_ndt::ScanPoints> first = scans.waitForFirst();

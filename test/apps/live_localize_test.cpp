@@ -1,13 +1,17 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <boost/asio/ip/udp.hpp>
 #include <boost/process/child.hpp>
+#include <boost/process/search_path.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
 #include "drive_files.h"
+#include "saw_ndt/evaluation/metrics.h"
+#include "saw_ndt/io/trajectory.h"
 
 namespace saw_ndt {
 namespace {
@@ -110,13 +114,56 @@ TEST_F(LiveLocalizeApp, TumLinesOnStdoutAreTheTrajectory) {
 
 TEST_F(LiveLocalizeApp, InterruptedBeforeAnyScanItFailsAndLeavesNothing) {
   bp::child program = start("");
-  // Signals are held back before the folder is made.
-  for (int i = 0; i < 3000 && !std::filesystem::exists(out); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  ASSERT_TRUE(waitForLines(errors, 1));
   EXPECT_EQ(interrupt(program, SIGINT), 1);
   EXPECT_NE(contentOf(errors).find("no scan came"), std::string::npos) << contentOf(errors);
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+/// A UDP port that nobody listens to.
+int freePort() {
+  boost::asio::io_context context;
+  return boost::asio::ip::udp::socket(context, {boost::asio::ip::make_address("127.0.0.1"), 0}).local_endpoint().port();
+}
+
+TEST_F(LiveLocalizeApp, AVelodyneOverUdpGivesThePosesOfItsCapture) {
+  const std::string python = bp::search_path("python3").string();
+  if (python.empty()) GTEST_SKIP() << "no python3, which writes and replays the capture";
+  const std::string capture = quoted(folder.path() / "drive.pcap");
+  const std::string scripts = SAW_NDT_SOURCE_DIR "/test/recordings/";
+  const AppResult written =
+      runAppProgram(python, "'" + scripts + "write_velodyne_capture.py' " + quoted(drive_folder) + capture);
+  ASSERT_EQ(written.exit_code, 0) << written.errors;
+  // The drive has no motion in its scans. What is found of a scan depends a little on its stamp, which is that of
+  // today.
+  const std::string options =
+      quoted(map_file) + quoted(out) + " -initial-pose 0,0,0,0,0,0 -skip 0 -motion-compensation off -threads 1 ";
+  const AppResult recorded = runAppProgram(SAW_NDT_APP, capture + options);
+  if (recorded.errors.find("libpcap") != std::string::npos) GTEST_SKIP() << recorded.errors;
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.errors;
+  const std::vector<StampedPose> expected = readTumTrajectory(out / "trajectory_tum.txt");
+  ASSERT_GE(expected.size(), 5U);
+
+  const std::string port = std::to_string(freePort());
+  bp::child program(bp::exe = SAW_NDT_APP,
+                    bp::args = boost::program_options::split_unix("udp:127.0.0.1:" + port + ' ' + options +
+                                                                  "-max-waiting 100 -stream " + quoted(stream)),
+                    bp::std_in<bp::null, bp::std_out> outputs.string(), bp::std_err > errors.string());
+  ASSERT_TRUE(waitForLines(errors, 1));
+  const AppResult replayed = runAppProgram(python, "'" + scripts + "replay_capture.py' " + capture + port);
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.errors;
+  // The capture's last turn is over where the file ends; a live one has no end but the next turn.
+  const std::size_t turns = expected.size() - 1;
+  EXPECT_TRUE(waitForLines(stream, static_cast<std::ptrdiff_t>(turns))) << contentOf(errors);
+  EXPECT_EQ(interrupt(program, SIGINT), 0) << contentOf(errors);
+  const std::vector<StampedPose> found = readTumTrajectory(out / "trajectory_tum.txt");
+  ASSERT_EQ(found.size(), turns);
+  for (std::size_t i = 0; i < turns; ++i) {
+    const PoseError error = poseError(expected[i].T_map_body, found[i].T_map_body);
+    EXPECT_LT(error.position_m, 0.001) << i;
+    EXPECT_LT(error.yaw_deg, 0.01) << i;
+  }
+  EXPECT_EQ(nlohmann::json::parse(contentOf(out / "summary.json")).at("left_out"), 0);
 }
 
 TEST_F(LiveLocalizeApp, RecordedRunsCanBeStreamedToo) {
