@@ -5,7 +5,7 @@ import sqlite3
 from cdr import point_cloud, pose_stamped, tf_message
 from drive import pose_track
 from frames import T_BASE_LIDAR, frame_tree
-from point_layouts import FRAME, OUSTER, PACKED
+from point_layouts import FRAME, PACKED
 
 CLOUD, POSE, TF, TEXT = ("sensor_msgs/msg/PointCloud2", "geometry_msgs/msg/PoseStamped", "tf2_msgs/msg/TFMessage",
                          "std_msgs/msg/String")
@@ -63,14 +63,14 @@ def metadata_yaml(parts, storage="sqlite3"):
     return "\n".join(lines) + "\n"
 
 
-def _clouds(scans, layout):
-    return [(scan.stamp_ns + DELAY_NS, "/points", CLOUD, point_cloud(scan.stamp_ns, scan.points, layout))
+def _clouds(scans):
+    return [(scan.stamp_ns + DELAY_NS, "/points", CLOUD, point_cloud(scan.stamp_ns, scan.points, PACKED))
             for scan in scans]
 
 
 def drive_messages(scans):
     """Clouds on /points and poses of the LiDAR on /pose."""
-    messages = _clouds(scans, PACKED)
+    messages = _clouds(scans)
     messages += [(stamp_ns + TRACK_DELAY_NS, "/pose", POSE, pose_stamped(stamp_ns, T))
                  for stamp_ns, T in pose_track(scans, 4)]
     return sorted(messages, key=lambda message: message[:2])
@@ -78,7 +78,7 @@ def drive_messages(scans):
 
 def tf_messages(scans):
     """Clouds on /points, and their poses by /tf and /tf_static alone."""
-    messages = _clouds(scans, OUSTER)
+    messages = _clouds(scans)
     first_ns = scans[0].stamp_ns
     messages.append((first_ns, "/tf_static", TF, tf_message([(first_ns, "base_link", FRAME, T_BASE_LIDAR)])))
     for stamp_ns, T_map_odom, T_odom_base in frame_tree(scans, 4):
