@@ -10,7 +10,7 @@ def _layout(step, **fields):
                      "offsets": [offset for _, offset in fields.values()], "itemsize": step})
 
 
-# Ouster's driver: padded for SSE, with fields that nobody asked for between the others.
+# Ouster's driver: padded for SSE, with fields that nobody asked for, here 0, between the others.
 OUSTER = _layout(48, x=("<f4", 0), y=("<f4", 4), z=("<f4", 8), intensity=("<f4", 16), t=("<u4", 20),
                  reflectivity=("<u2", 24), ring=("<u2", 26), ambient=("<u2", 28), range=("<u4", 32))
 # Nothing is padded, and numbers lie at odd addresses.
@@ -27,8 +27,6 @@ def cloud_bytes(points, layout):
     for name in layout.names:
         if name in points.dtype.names:
             cloud[name] = points[name]
-    if "range" in layout.names:
-        cloud["range"] = 1000.0 * np.sqrt(points["x"] ** 2 + points["y"] ** 2 + points["z"] ** 2)
     return cloud.tobytes()
 
 
