@@ -49,8 +49,7 @@ function(saw_ndt_use_vector_dispatch target)
 endfunction()
 
 # saw_ndt_add_test(NAME SOURCE... [LIBRARIES LIBRARY...] [PROPERTIES NAME VALUE...]): a GoogleTest program, each of its tests
-# known to CTest by its
-# own name. Tests may look at what is private.
+# known to CTest by its own name, with these properties. Tests may look at what is private.
 function(saw_ndt_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LIBRARIES;PROPERTIES")
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})

@@ -10,7 +10,7 @@ from point_layouts import FRAME, PACKED, cloud_bytes
 MESSAGES = 10_000
 EVERY = 1_000  # of so many messages one is damaged, and one is of another topic and type
 DAMAGED_AT, OTHER_AT = 500, 250
-POINTS = 24
+POINTS = 12
 STEP_NS = 10_000_000
 
 
