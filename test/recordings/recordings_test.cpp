@@ -21,7 +21,7 @@ struct Form {
   std::string path;       ///< below the folder of recordings
   std::string arguments;  ///< that say which of its topics are meant
   /// How far poses may be from those of the reference (m and rad); 0: the same bytes. Where poses are given in degrees
-  /// of latitude or as a chain of transforms, they are rounded otherwise.
+  /// of latitude or as a chain of transforms, they are rounded otherwise, and an alignment ends some micrometres off.
   double tolerance = 0.0;
   bool is_cut = false;  ///< to the first scans of the drive
 };
@@ -73,7 +73,7 @@ class RecordingForm : public ::testing::TestWithParam<Form> {
 
 TEST_P(RecordingForm, GivesTheMapAndTheTrajectoryOfKittiOdometry) {
   const Form& form = GetParam();
-  const std::string reference = form.is_cut ? "reference_first" : "reference_all";
+  const std::string reference = form.is_cut ? "reference_kitti_first" : "reference_kitti";
   const Outcome expected = outcomeIn(kRecordings / (reference + ".map"), kRecordings / reference);
   const Outcome found = outcomeOf(form);
   if (form.tolerance == 0.0) {
@@ -92,7 +92,7 @@ TEST_P(RecordingForm, GivesTheMapAndTheTrajectoryOfKittiOdometry) {
 }
 
 constexpr char kTopic[] = "-topic /points";
-constexpr double kRounded = 1e-6;
+constexpr double kRounded = 1e-4;
 
 INSTANTIATE_TEST_SUITE_P(
     All, RecordingForm,

@@ -24,16 +24,18 @@ except ImportError as missing:
     ros1_writer = None
     print(f"no bags of ROS 1: {missing} (python3-rosbag, python3-sensor-msgs, python3-nav-msgs, python3-tf2-msgs)")
 
-ASCII_SCANS = 3
+# Of forms that take much space.
+FIRST_SCANS = 3
 
 
 def write_folders(out, scans):
     write_kitti_odometry(out / "kitti", scans)
+    write_kitti_odometry(out / "kitti_first", scans[:FIRST_SCANS])
     write_kitti_raw(out / "kitti_raw", scans, out / "kitti")
     write_pcd_by_stamps(out / "pcd_stamps", scans)
     write_pcd_by_numbers(out / "pcd_numbers", scans, out / "pcd_stamps")
     write_ply_folder(out / "ply", scans, write_ply)
-    write_ply_folder(out / "ply_ascii", scans[:ASCII_SCANS], write_ascii_ply)
+    write_ply_folder(out / "ply_ascii", scans[:FIRST_SCANS], write_ascii_ply)
 
 
 def write_ros1(out, scans):
