@@ -18,7 +18,6 @@ from point_layouts import PACKED
 
 try:
     import ros1_writer
-    from sensor_msgs.msg import PointCloud2
     from std_msgs.msg import String
 except ImportError as missing:
     ros1_writer = None
