@@ -59,7 +59,7 @@ def write_ply(path, points):
 
 
 def write_ascii_ply(path, points):
-    rows = "".join(f"{p['x']:.9g} {p['y']:.9g} {p['z']:.9g} {p['intensity']:.9g} {p['ring']} {p['t']}\n" for p in points)
+    rows = "".join(f"{x:.9g} {y:.9g} {z:.9g} {intensity:.9g} {ring} {t}\n" for x, y, z, intensity, ring, t in points)
     path.write_text(_ply_header("ascii", POINT, len(points)) + rows)
 
 

@@ -50,9 +50,10 @@ function cloudBytes(columns, layout) {
 
 function cloudMessage(scan, layout) {
   const data = cloudBytes(scan.columns, layout);
-  const fields = Object.entries(layout.fields).map(([name, [offset, datatype]]) => ({ name, offset, datatype, count: 1 }));
-  return { header: { stamp: timeOf(scan.stampNs), frame_id: kFrame }, height: 1, width: data.length / layout.step, fields,
-           is_bigendian: false, point_step: layout.step, row_step: data.length, data, is_dense: true };
+  const fields = Object.entries(layout.fields)
+    .map(([name, [offset, datatype]]) => ({ name, offset, datatype, count: 1 }));
+  return { header: { stamp: timeOf(scan.stampNs), frame_id: kFrame }, height: 1, width: data.length / layout.step,
+           fields, is_bigendian: false, point_step: layout.step, row_step: data.length, data, is_dense: true };
 }
 
 function odometryMessage({ stampNs, numbers: [x, y, z, qx, qy, qz, qw] }) {
@@ -77,7 +78,8 @@ function typeOf(name) {
     const own_text = rosmsg.stringify([definition]);
     return i === 0 ? own_text : `${ruler}\nMSG: ${type}\n${own_text}`;
   }).join("\n");
-  return { name: name.replace("/", "/msg/"), text, writer: new serialization.MessageWriter(rosmsg.parse(text, { ros2: true })) };
+  const writer = new serialization.MessageWriter(rosmsg.parse(text, { ros2: true }));
+  return { name: name.replace("/", "/msg/"), text, writer };
 }
 
 function compression(kind) {
@@ -105,8 +107,8 @@ async function writeBag(path, messages, options) {
       channels.set(topic, await writer.registerChannel(
         { topic, schemaId, messageEncoding: "cdr", metadata: new Map([["offered_qos_profiles", ""]]) }));
     }
-    await writer.addMessage(
-      { channelId: channels.get(topic), sequence: sequence++, logTime: recordedNs, publishTime: recordedNs, data: bytes });
+    await writer.addMessage({ channelId: channels.get(topic), sequence: sequence++, logTime: recordedNs,
+                              publishTime: recordedNs, data: bytes });
   }
   await writer.end();
   closeSync(file);
