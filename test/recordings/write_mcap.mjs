@@ -6,7 +6,7 @@ import serialization from "@foxglove/rosmsg2-serialization";
 import zstd from "@foxglove/wasm-zstd";
 import { McapWriter } from "@mcap/core";
 import lz4 from "lz4js";
-import { mkdirSync, openSync, closeSync, readFileSync, readdirSync, writeSync } from "node:fs";
+import { mkdirSync, openSync, closeSync, readFileSync, readdirSync, rmSync, writeSync } from "node:fs";
 import { join } from "node:path";
 
 const kFrame = "os_lidar";
@@ -163,5 +163,6 @@ await writeBag(join(folder, "zstd.mcap"), padded, { ...chunks, compressChunk: co
 await writeBag(join(folder, "lz4.mcap"), packed, { ...chunks, compressChunk: compression("lz4") });
 await writeBag(join(folder, "none.mcap"), packed, chunks);
 await writeBag(join(folder, "no_chunks.mcap"), packed, { useChunks: false });
-await writeBag(join(recordings, "damaged", "damaged.mcap"),
-               damagedMessages(join(recordings, "damaged", "damaged.messages"), cloud, text), chunks);
+const damaged = join(recordings, "damaged", "damaged.messages");
+await writeBag(join(recordings, "damaged", "damaged.mcap"), damagedMessages(damaged, cloud, text), chunks);
+rmSync(damaged);
