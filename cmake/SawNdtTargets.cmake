@@ -48,14 +48,14 @@ function(saw_ndt_use_vector_dispatch target)
   target_include_directories(${target} PRIVATE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
 endfunction()
 
-# saw_ndt_add_test(NAME SOURCE... [LIBRARIES LIBRARY...]): a GoogleTest program, each of its tests known to CTest by its
-# own name. Tests may look at what is private.
+# saw_ndt_add_test(NAME SOURCE... [LIBRARIES LIBRARY...] [PROPERTIES NAME VALUE...]): a GoogleTest program, each of its tests
+# known to CTest by its own name, with these properties. Tests may look at what is private.
 function(saw_ndt_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" LIBRARIES)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LIBRARIES;PROPERTIES")
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
   saw_ndt_set_up_target(${name})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src)
   target_compile_definitions(${name} PRIVATE SAW_NDT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} saw_ndt::saw_ndt GTest::gtest_main)
-  gtest_discover_tests(${name} PROPERTIES TIMEOUT 600 DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(${name} PROPERTIES TIMEOUT 600 ${arg_PROPERTIES} DISCOVERY_TIMEOUT 60)
 endfunction()

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 that building, testing and running need, if any is missing.
 # This is the one list of them. libpcl-dev brings Eigen, Boost, FLANN, VTK, Qt and MPI, which PCL's CMake package asks for.
+# The Python modules write the recordings that test/recordings reads; its MCAP bags also need npm, wherever it comes from.
 set -euo pipefail
 
 packages=(
@@ -9,6 +10,7 @@ packages=(
   nlohmann-json3-dev libhwy-dev libembree-dev libpcap-dev
   libgtest-dev libbenchmark-dev python3
   gnuplot-nox
+  python3 python3-numpy python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-std-msgs python3-tf2-msgs
 )
 
 if ! command -v dpkg-query > /dev/null; then
