@@ -7,6 +7,7 @@ packages=(
   build-essential cmake ninja-build ccache
   libpcl-dev libeigen3-dev libboost-dev libboost-filesystem-dev libboost-program-options-dev libboost-system-dev zlib1g-dev
   nlohmann-json3-dev libhwy-dev libembree-dev
+  libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libfastcdr-dev
   libgtest-dev libbenchmark-dev
   gnuplot-nox
 )

@@ -153,7 +153,7 @@ std::optional<Eigen::Isometry3d> BagPoses::at(double stamp_s) {
   read();
   if (source_ == Source::NONE) return std::nullopt;
   if (source_ != Source::TOPIC) return tree_.find(fixed_frame_, lidar_frame_, stamp_s);
-  const std::optional<Eigen::Isometry3d> T_map_body = poseAt(trajectory_, stamp_s, kLongestPoseGap_s);
+  std::optional<Eigen::Isometry3d> T_map_body = poseAt(trajectory_, stamp_s, kLongestPoseGap_s);
   if (!T_map_body || body_frame_.empty()) return T_map_body;
   const std::optional<Eigen::Isometry3d> T_body_lidar = tree_.find(body_frame_, lidar_frame_, stamp_s);
   if (!T_body_lidar) return std::nullopt;

@@ -111,7 +111,7 @@ class BagRecording : public Recording {
   /// The frame of the first cloud that tells it.
   std::string lidarFrame() const {
     for (const MessageEntry& entry : entries_) {
-      const std::string frame = headerOf(entry).frame_id;
+      std::string frame = headerOf(entry).frame_id;
       if (!frame.empty()) return frame;
     }
     return "";

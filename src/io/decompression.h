@@ -18,7 +18,8 @@ struct DecompressionStep {
   bool stuck = false;  ///< they end too early
 };
 
-/// Collects what step(to, room) writes, which throws DamagedData; memory grows with what is really there.
+/// Collects what step(to, room) writes, which throws DamagedData; memory grows with what is really there, and what
+/// was written before is left in `bytes`.
 /// @param compressed_bytes  how large the compressed data are
 /// @param greatest          no more is written
 template <typename Step>
@@ -28,12 +29,17 @@ void collectDecompressed(std::size_t compressed_bytes, std::uint64_t greatest, s
   const auto limit = static_cast<std::size_t>(greatest);
   bytes.resize(std::min(limit, std::max(kFewBytes, kUsualRatio * compressed_bytes)));
   std::size_t size = 0;
-  while (size < limit) {
-    if (size == bytes.size()) bytes.resize(std::min(limit, 2 * bytes.size()));
-    const DecompressionStep done = step(bytes.data() + size, bytes.size() - size);
-    size += done.written;
-    if (done.ended) break;
-    if (done.stuck) throw DamagedData("the compressed data end too early");
+  try {
+    while (size < limit) {
+      if (size == bytes.size()) bytes.resize(std::min(limit, 2 * bytes.size()));
+      const DecompressionStep done = step(bytes.data() + size, bytes.size() - size);
+      size += done.written;
+      if (done.ended) break;
+      if (done.stuck) throw DamagedData("the compressed data end too early");
+    }
+  } catch (const DamagedData&) {
+    bytes.resize(size);
+    throw;
   }
   bytes.resize(size);
 }

@@ -25,6 +25,7 @@ class McapFile : public MessageFile {
     if (damaged_chunks_ > 0) {
       warn(std::to_string(damaged_chunks_) + " chunks are damaged and have no index: they are left out");
     }
+    if (damaged_records_ > 0) warn(std::to_string(damaged_records_) + " records are damaged and left out");
     learnChannels();
     makeTopics();
   }
@@ -94,22 +95,72 @@ class McapFile : public MessageFile {
     std::uint64_t place = kMcapMagicBytes;
     bool ended = false;
     while (!ended && place < file_.size()) {
-      if (file_.size() - place < kMcapHeadBytes) break;
-      ByteReader head(file_.read(place, kMcapHeadBytes));
-      const auto kind = static_cast<McapKind>(head.read<std::uint8_t>());
-      const auto size = head.read<std::uint64_t>();
-      if (static_cast<std::uint8_t>(kind) == 0 || size > file_.size() - place - kMcapHeadBytes) break;
-      try {
-        take(kind, place + kMcapHeadBytes, size);
-      } catch (const DamagedData&) {
-        break;
+      const std::uint64_t size = takeRecord(place, ended);
+      if (size > 0) {
+        place += size;
+        continue;
       }
-      ended = kind == McapKind::FOOTER;
-      place += kMcapHeadBytes + size;
+      const std::uint64_t next = placeBehindDamage(place);
+      if (next == file_.size()) break;
+      warn("the file is damaged from offset " + std::to_string(place) + " to " + std::to_string(next));
+      forgetLastIndex();
+      place = next;
     }
     if (ended) return;
     warn("the file is cut short or damaged at offset " + std::to_string(place) + " and read up to there");
-    // The indices behind the last chunk may be missing.
+    forgetLastIndex();
+  }
+
+  /// @param ended  set where the record is the last one
+  /// @return bytes of the record; 0 where it is damaged or the file ends within it
+  std::uint64_t takeRecord(std::uint64_t place, bool& ended) {
+    if (file_.size() - place < kMcapHeadBytes) return 0;
+    ByteReader head(file_.read(place, kMcapHeadBytes));
+    const auto kind = static_cast<McapKind>(head.read<std::uint8_t>());
+    const auto size = head.read<std::uint64_t>();
+    const std::uint64_t there = file_.size() - place - kMcapHeadBytes;
+    if (static_cast<std::uint8_t>(kind) == 0 || (size > there && kind != McapKind::CHUNK)) return 0;
+    try {
+      take(kind, place + kMcapHeadBytes, std::min(size, there));
+    } catch (const DamagedData&) {
+      ++damaged_records_;
+      // The indices that follow belong to it.
+      if (kind == McapKind::CHUNK) chunks_.emplace_back();
+    }
+    if (size > there) return 0;
+    // A chunk that ends within the file is not cut but damaged.
+    if (kind == McapKind::CHUNK && chunks_.back().cut) chunks_.back() = McapChunk();
+    ended = kind == McapKind::FOOTER;
+    return kMcapHeadBytes + size;
+  }
+
+  /// Where the next chunk is, or the summary, as the summary tells; the end of the file where it is not there.
+  std::uint64_t placeBehindDamage(std::uint64_t place) {
+    const std::uint64_t footer_bytes = kMcapHeadBytes + kMcapFooterBytes + kMcapMagicBytes;
+    if (file_.size() - place < footer_bytes) return file_.size();
+    try {
+      ByteReader footer(file_.read(file_.size() - footer_bytes, footer_bytes));
+      if (static_cast<McapKind>(footer.read<std::uint8_t>()) != McapKind::FOOTER) return file_.size();
+      footer.read<std::uint64_t>();
+      const auto summary = footer.read<std::uint64_t>();
+      if (summary <= place || summary > file_.size() - footer_bytes) return file_.size();
+      std::uint64_t next = summary;
+      const ByteView records = file_.read(summary, file_.size() - footer_bytes - summary);
+      forEachMcapRecord(records, [&](McapKind kind, ByteView content, std::size_t) {
+        if (kind != McapKind::CHUNK_INDEX) return;
+        ByteReader reader(content);
+        reader.bytes(2 * sizeof(std::uint64_t));  // from when to when
+        const auto chunk = reader.read<std::uint64_t>();
+        if (chunk > place) next = std::min(next, chunk);
+      });
+      return next;
+    } catch (const DamagedData&) {
+      return file_.size();
+    }
+  }
+
+  /// Where the file is damaged behind a chunk, its indices may be missing, or its end.
+  void forgetLastIndex() {
     if (chunks_.empty()) return;
     const std::size_t last = chunks_.size() - 1;
     index_.erase(
@@ -165,21 +216,25 @@ class McapFile : public MessageFile {
         if (messages) list(head, number, offset);
       });
     } catch (const DamagedData&) {
-      if (messages) ++damaged_chunks_;
+      if (messages && !chunks_[number].cut) ++damaged_chunks_;
     }
   }
 
   /// Where there is no summary, channels stand in the chunks alone: in that of their first message, or one before it.
   void learnChannels() {
-    std::size_t next_before = 0;
-    for (const IndexRecord& record : index_) {
-      if (channels_.know(record.channel)) continue;
-      if (!unknown_.insert(record.channel).second) continue;
-      if (scanned_.count(record.chunk) == 0) scan(record.chunk, false);
-      for (; !channels_.know(record.channel) && next_before < record.chunk; ++next_before) {
-        if (scanned_.count(next_before) == 0) scan(next_before, false);
-      }
-    }
+    for (const IndexRecord& record : index_) learnChannel(record.channel, record.chunk);
+    for (const auto& [channel, listed] : listed_) learnChannel(channel, listed.front().chunk);
+  }
+
+  /// @param chunk  of the first message of the channel
+  void learnChannel(std::uint16_t channel, std::uint64_t chunk) {
+    if (channels_.know(channel) || !unknown_.insert(channel).second) return;
+    const auto scanOnce = [&](std::size_t number) {
+      if (scanned_.count(number) == 0) scan(number, false);
+    };
+    if (chunk != kNoChunk) scanOnce(chunk);
+    const std::size_t before = std::min<std::uint64_t>(chunk, chunks_.size());
+    for (; !channels_.know(channel) && learned_ < before; ++learned_) scanOnce(learned_);
   }
 
   void makeTopics() {
@@ -234,7 +289,8 @@ class McapFile : public MessageFile {
   McapChannels channels_;
   std::map<std::uint16_t, std::uint32_t> topics_of_channels_;
   std::set<std::size_t> chunks_with_index_, scanned_;
-  std::size_t damaged_chunks_ = 0;
+  std::size_t damaged_records_ = 0, damaged_chunks_ = 0;
+  std::size_t learned_ = 0;          // chunks from the first on that were looked through for channels
   std::set<std::uint16_t> unknown_;  // channels that were looked for
   ChunkCache cache_;
 };

@@ -2,6 +2,8 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+
 #include "io/decompression.h"
 
 namespace saw_ndt::internal {
@@ -59,25 +61,32 @@ McapChunk readMcapChunkHead(ByteView content, std::uint64_t offset, std::uint64_
   chunk.compression = compressionOf(reader.readString());
   chunk.size = reader.read<std::uint64_t>();
   chunk.records = offset + reader.position();
-  if (chunk.size > size - reader.position()) throw DamagedData("the chunk's records are larger than the chunk");
+  const std::uint64_t there = size - reader.position();
+  chunk.cut = chunk.size > there;
+  chunk.size = std::min(chunk.size, there);
   return chunk;
 }
 
 void unpackMcapChunk(const McapChunk& chunk, ByteView packed, std::vector<unsigned char>& bytes) {
   requireUnpackedSize(chunk.unpacked_size);
-  switch (chunk.compression) {
-    case McapChunk::Compression::NONE:
-      bytes.assign(packed.data, packed.data + packed.size);
-      break;
-    case McapChunk::Compression::LZ4:
-      decompressLz4(packed, chunk.unpacked_size, bytes);
-      break;
-    case McapChunk::Compression::ZSTD:
-      decompressZstd(packed, chunk.unpacked_size, bytes);
-      break;
-    case McapChunk::Compression::UNKNOWN:
-      throw DamagedData("the compression of the chunk is not known");
+  try {
+    switch (chunk.compression) {
+      case McapChunk::Compression::NONE:
+        bytes.assign(packed.data, packed.data + packed.size);
+        break;
+      case McapChunk::Compression::LZ4:
+        decompressLz4(packed, chunk.unpacked_size, bytes);
+        break;
+      case McapChunk::Compression::ZSTD:
+        decompressZstd(packed, chunk.unpacked_size, bytes);
+        break;
+      case McapChunk::Compression::UNKNOWN:
+        throw DamagedData("the compression of the chunk is not known");
+    }
+  } catch (const DamagedData&) {
+    if (!chunk.cut || chunk.compression == McapChunk::Compression::UNKNOWN) throw;
   }
+  if (chunk.cut) return;
   requireAllUnpacked(bytes.size(), chunk.unpacked_size);
   if (chunk.crc != 0 && crc32_z(0, bytes.data(), bytes.size()) != chunk.crc) {
     throw DamagedData("the chunk is damaged: its checksum is another");

@@ -17,10 +17,12 @@ enum class McapKind : std::uint8_t {
   MESSAGE = 5,
   CHUNK = 6,
   MESSAGE_INDEX = 7,
+  CHUNK_INDEX = 8,
 };
 
 constexpr std::uint64_t kMcapMagicBytes = 8;
-constexpr std::uint64_t kMcapHeadBytes = 9;          ///< in front of every record: its kind and length
+constexpr std::uint64_t kMcapHeadBytes = 9;  ///< in front of every record: its kind and length
+constexpr std::uint64_t kMcapFooterBytes = 20;
 constexpr std::uint64_t kMcapMessageHeadBytes = 22;  ///< in front of the data within a message's record
 constexpr std::uint64_t kMcapIndexHeadBytes = 6;     ///< in front of the entries within an index
 constexpr std::uint64_t kMcapIndexEntryBytes = 16;
@@ -60,14 +62,16 @@ struct McapChunk {
   std::uint32_t crc = 0;      ///< of the unpacked bytes; 0: not known
   std::uint64_t records = 0;  ///< offset in the file
   std::uint64_t size = 0;     ///< of the records, as they are in the file
+  bool cut = false;           ///< the file ends within them
 };
 /// Reads the head of the content of a chunk.
 /// @param content  its first bytes
 /// @param offset   where it lies
-/// @param size     all bytes of it
+/// @param size     all bytes of it that are in the file
 McapChunk readMcapChunkHead(ByteView content, std::uint64_t offset, std::uint64_t size);
 
-/// Unpacks a chunk, whose bytes in the file are `packed`, and checks it. Throws DamagedData.
+/// Unpacks a chunk, whose bytes in the file are `packed`, and checks it; one that is cut as far as it can be. Throws
+/// DamagedData.
 void unpackMcapChunk(const McapChunk& chunk, ByteView packed, std::vector<unsigned char>& bytes);
 
 /// Calls take(kind, content, offset) with every record within a chunk. Throws DamagedData behind the last one where
