@@ -1,5 +1,7 @@
 #include "drives/bag_poses.h"
 
+#include <pcl/console/print.h>
+
 #include <algorithm>
 
 #include "common/pose_interpolation.h"
@@ -94,7 +96,13 @@ void BagPoses::read() {
     // Without a chain of transforms to it the body is taken to be the LiDAR.
     if (body_frame_ == lidar_frame_) body_frame_.clear();
     if (!body_frame_.empty()) readTransforms();
-    if (!tree_.connects(body_frame_, lidar_frame_)) body_frame_.clear();
+    if (!tree_.connects(body_frame_, lidar_frame_)) {
+      if (!body_frame_.empty()) {
+        PCL_WARN("[saw_ndt::openBag] %s: no transforms lead from %s to %s: its poses are taken to be the LiDAR's.\n",
+                 file_.path().c_str(), body_frame_.c_str(), lidar_frame_.c_str());
+      }
+      body_frame_.clear();
+    }
     if (trajectory_.empty()) source_ = Source::NONE;
   } else {
     readTransforms();

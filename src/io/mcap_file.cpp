@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "io/mcap_records.h"
@@ -25,6 +26,7 @@ class McapFile : public MessageFile {
     if (damaged_chunks_ > 0) {
       warn(std::to_string(damaged_chunks_) + " chunks are damaged and have no index: they are left out");
     }
+    if (damaged_places_ > 0) warn("the file is damaged at " + std::to_string(damaged_places_) + " of its records");
     if (damaged_records_ > 0) warn(std::to_string(damaged_records_) + " records are damaged and left out");
     learnChannels();
     makeTopics();
@@ -102,13 +104,13 @@ class McapFile : public MessageFile {
       }
       const std::uint64_t next = placeBehindDamage(place);
       if (next == file_.size()) break;
-      warn("the file is damaged from offset " + std::to_string(place) + " to " + std::to_string(next));
+      ++damaged_places_;
       forgetLastIndex();
       place = next;
     }
     if (ended) return;
-    warn("the file is cut short or damaged at offset " + std::to_string(place) + " and read up to there");
     forgetLastIndex();
+    warn("the file is cut short or damaged at offset " + std::to_string(place) + " and read up to there");
   }
 
   /// @param ended  set where the record is the last one
@@ -136,36 +138,42 @@ class McapFile : public MessageFile {
 
   /// Where the next chunk is, or the summary, as the summary tells; the end of the file where it is not there.
   std::uint64_t placeBehindDamage(std::uint64_t place) {
-    const std::uint64_t footer_bytes = kMcapHeadBytes + kMcapFooterBytes + kMcapMagicBytes;
-    if (file_.size() - place < footer_bytes) return file_.size();
-    try {
-      ByteReader footer(file_.read(file_.size() - footer_bytes, footer_bytes));
-      if (static_cast<McapKind>(footer.read<std::uint8_t>()) != McapKind::FOOTER) return file_.size();
-      footer.read<std::uint64_t>();
-      const auto summary = footer.read<std::uint64_t>();
-      if (summary <= place || summary > file_.size() - footer_bytes) return file_.size();
-      std::uint64_t next = summary;
-      const ByteView records = file_.read(summary, file_.size() - footer_bytes - summary);
-      forEachMcapRecord(records, [&](McapKind kind, ByteView content, std::size_t) {
-        if (kind != McapKind::CHUNK_INDEX) return;
-        ByteReader reader(content);
-        reader.bytes(2 * sizeof(std::uint64_t));  // from when to when
-        const auto chunk = reader.read<std::uint64_t>();
-        if (chunk > place) next = std::min(next, chunk);
-      });
-      return next;
-    } catch (const DamagedData&) {
-      return file_.size();
+    if (!known_places_) {
+      known_places_.emplace();
+      try {
+        readKnownPlaces(*known_places_);
+      } catch (const DamagedData&) {
+      }
+      std::sort(known_places_->begin(), known_places_->end());
     }
+    const auto next = std::upper_bound(known_places_->begin(), known_places_->end(), place);
+    return next == known_places_->end() ? file_.size() : std::min(*next, file_.size());
+  }
+
+  /// Those of the chunks and the summary, by the summary. Throws DamagedData behind the last one that can be read.
+  void readKnownPlaces(std::vector<std::uint64_t>& places) {
+    constexpr std::uint64_t kEndBytes = kMcapHeadBytes + kMcapFooterBytes + kMcapMagicBytes;
+    if (file_.size() < kEndBytes) return;
+    const std::uint64_t end = file_.size() - kEndBytes;
+    ByteReader footer(file_.read(end, kEndBytes));
+    if (static_cast<McapKind>(footer.read<std::uint8_t>()) != McapKind::FOOTER) return;
+    footer.read<std::uint64_t>();
+    const auto summary = footer.read<std::uint64_t>();
+    if (summary == 0 || summary > end) return;
+    places.push_back(summary);
+    forEachMcapRecord(file_.read(summary, end - summary), [&](McapKind kind, ByteView content, std::size_t) {
+      if (kind != McapKind::CHUNK_INDEX) return;
+      ByteReader reader(content);
+      reader.bytes(2 * sizeof(std::uint64_t));  // from when to when
+      places.push_back(reader.read<std::uint64_t>());
+    });
   }
 
   /// Where the file is damaged behind a chunk, its indices may be missing, or its end.
   void forgetLastIndex() {
     if (chunks_.empty()) return;
     const std::size_t last = chunks_.size() - 1;
-    index_.erase(
-        std::remove_if(index_.begin(), index_.end(), [&](const IndexRecord& record) { return record.chunk == last; }),
-        index_.end());
+    while (!index_.empty() && index_.back().chunk == last) index_.pop_back();
     chunks_with_index_.erase(last);
   }
 
@@ -289,7 +297,8 @@ class McapFile : public MessageFile {
   McapChannels channels_;
   std::map<std::uint16_t, std::uint32_t> topics_of_channels_;
   std::set<std::size_t> chunks_with_index_, scanned_;
-  std::size_t damaged_records_ = 0, damaged_chunks_ = 0;
+  std::size_t damaged_places_ = 0, damaged_records_ = 0, damaged_chunks_ = 0;
+  std::optional<std::vector<std::uint64_t>> known_places_;  // see placeBehindDamage()
   std::size_t learned_ = 0;          // chunks from the first on that were looked through for channels
   std::set<std::uint16_t> unknown_;  // channels that were looked for
   ChunkCache cache_;

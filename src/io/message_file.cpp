@@ -58,12 +58,9 @@ std::string typeWithoutKind(const std::string& type) {
 
 std::uint32_t MessageFile::topicOf(const std::string& name, const std::string& type, MessageEncoding encoding) {
   const std::string form = typeWithoutKind(type);
-  const auto same = std::find_if(topics_.begin(), topics_.end(), [&](const MessageTopic& topic) {
-    return topic.name == name && topic.type == form && topic.encoding == encoding;
-  });
-  if (same != topics_.end()) return static_cast<std::uint32_t>(same - topics_.begin());
-  topics_.push_back({name, form, encoding, 0});
-  return static_cast<std::uint32_t>(topics_.size() - 1);
+  const auto [known, added] = numbers_.try_emplace({name, form, encoding}, static_cast<std::uint32_t>(topics_.size()));
+  if (added) topics_.push_back({name, form, encoding, 0});
+  return known->second;
 }
 
 void MessageFile::warn(const std::string& what) {

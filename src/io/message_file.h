@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "io/byte_reader.h"
@@ -78,6 +80,7 @@ class MessageFile {
  private:
   std::filesystem::path path_;
   std::string warning_;
+  std::map<std::tuple<std::string, std::string, MessageEncoding>, std::uint32_t> numbers_;  // of the topics
 };
 
 /// Whether this is a recording of ROS: a file that begins as a bag of ROS 1 or 2 does, or a folder of such files of
