@@ -18,6 +18,7 @@
 #include "drives/scan_folder.h"
 #include "io/bin_scan.h"
 #include "io/pcd_fields.h"
+#include "io/stamp_seconds.h"
 #include "io/stamp_text.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/scan_file.h"
@@ -46,7 +47,7 @@ class Descriptor {
 double changeTime(const fs::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) return 0.0;
-  return secondsOf(status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+  return stampSeconds(status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
 }
 
 class FollowedFolder : public LiveSource {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "drives/amended_recording.h"
+#include "drives/bag_recording.h"
 #include "drives/kitti_raw_drive.h"
 #include "drives/scan_folder.h"
 #if SAW_NDT_HAS_PCAP
@@ -54,6 +55,7 @@ std::unique_ptr<Recording> openCapture(const fs::path& path, [[maybe_unused]] co
 std::unique_ptr<Recording> openWithOwnPoses(const fs::path& path, const RecordingOptions& options) {
   if (isKittiRawDrive(path)) return openKittiRawDrive(path, options);
   if (fs::is_regular_file(path) && isCapture(path)) return openCapture(path, options);
+  if (isBag(path)) return openBag(path, options);
   if (isKittiTrackingSequence(path)) return openKittiTrackingSequence(path, options);
   const fs::path scans = fs::is_directory(path / "velodyne") ? path / "velodyne" : path;
   if (!fs::is_directory(scans) && !isScanFile(scans)) {

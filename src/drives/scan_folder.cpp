@@ -1,11 +1,11 @@
 #include "drives/scan_folder.h"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <vector>
 
 #include "io/bin_scan.h"
+#include "io/natural_order.h"
 #include "io/pcd_fields.h"
 #include "io/ply_cloud.h"
 #include "io/stamp_text.h"
@@ -19,30 +19,6 @@ namespace saw_ndt::internal {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Whether one name comes before another, numbers in them by their value.
-bool naturallyBefore(const std::string& a, const std::string& b) {
-  const auto isDigit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (!isDigit(a[i]) || !isDigit(b[j])) {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i;
-      ++j;
-      continue;
-    }
-    const auto numberFrom = [&](const std::string& text, std::size_t& at) {
-      while (at < text.size() && text[at] == '0') ++at;
-      const std::size_t first = at;
-      while (at < text.size() && isDigit(text[at])) ++at;
-      return text.substr(first, at - first);
-    };
-    const std::string x = numberFrom(a, i), y = numberFrom(b, j);
-    if (x.size() != y.size()) return x.size() < y.size();
-    if (x != y) return x < y;
-  }
-  return a.size() - i < b.size() - j;
-}
 
 /// The first of these files that exists in a folder or in the one above it; empty where none does.
 fs::path findBeside(const fs::path& folder, const std::vector<std::string>& names) {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <ctime>
 #include <string>
+
+#include "io/stamp_seconds.h"
 
 namespace saw_ndt::internal {
 
@@ -21,7 +24,7 @@ std::optional<std::int64_t> wholeNumber(std::string_view digits) {
 }
 
 /// Nanoseconds of the digits behind a decimal point.
-std::optional<std::int64_t> nanosecondsOf(std::string_view digits) {
+std::optional<std::int64_t> nanostampSeconds(std::string_view digits) {
   std::string nine(digits.substr(0, kNanosecondDigits));
   if (digits.find_first_not_of(kDigits) != std::string_view::npos) return std::nullopt;
   nine.resize(kNanosecondDigits, '0');
@@ -53,7 +56,7 @@ std::optional<double> stampOfDate(std::string_view text) {
   std::string_view fraction = text.substr(std::min<std::size_t>(text.size(), 19));
   if (!fraction.empty() && fraction.back() == 'Z') fraction.remove_suffix(1);
   if (!fraction.empty()) fraction.remove_prefix(1);
-  const std::optional<std::int64_t> nanoseconds = nanosecondsOf(fraction);
+  const std::optional<std::int64_t> nanoseconds = nanostampSeconds(fraction);
   if (!nanoseconds) return std::nullopt;
   std::tm date{};
   date.tm_year = static_cast<int>(numbers[0]) - 1900;
@@ -62,7 +65,7 @@ std::optional<double> stampOfDate(std::string_view text) {
   date.tm_hour = static_cast<int>(numbers[3]);
   date.tm_min = static_cast<int>(numbers[4]);
   date.tm_sec = static_cast<int>(numbers[5]);
-  return secondsOf(timegm(&date), *nanoseconds);
+  return stampSeconds(timegm(&date), *nanoseconds);
 }
 
 std::optional<double> stampOfName(std::string_view stem) {
@@ -74,20 +77,20 @@ std::optional<double> stampOfName(std::string_view stem) {
   const std::optional<std::int64_t> number = wholeNumber(whole);
   if (!number) return std::nullopt;
   if (!rest.empty()) {
-    const std::optional<std::int64_t> nanoseconds = nanosecondsOf(rest.substr(1));
+    const std::optional<std::int64_t> nanoseconds = nanostampSeconds(rest.substr(1));
     const bool is_pair = (rest.front() == '_' || rest.front() == '-') && rest.size() == 1 + kNanosecondDigits;
     if (!nanoseconds || rest.size() == 1 || (rest.front() != '.' && !is_pair)) return std::nullopt;
-    return secondsOf(*number, *nanoseconds);
+    return stampSeconds(*number, *nanoseconds);
   }
   switch (whole.size()) {
     case 10:
       return static_cast<double>(*number);
     case 13:
-      return secondsOf(*number / 1000, *number % 1000 * 1000000);
+      return stampSeconds(*number / 1000, *number % 1000 * 1000000);
     case 16:
-      return secondsOf(*number / 1000000, *number % 1000000 * 1000);
+      return stampSeconds(*number / 1000000, *number % 1000000 * 1000);
     case 19:
-      return secondsOf(*number / 1000000000, *number % 1000000000);
+      return stampSeconds(*number / 1000000000, *number % 1000000000);
     default:
       return std::nullopt;
   }

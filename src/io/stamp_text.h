@@ -1,17 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string_view>
 
 #include "saw_ndt/common/export.h"
 
 namespace saw_ndt::internal {
-
-/// Seconds and nanoseconds as one number of seconds: the double nearest to it.
-inline double secondsOf(std::int64_t seconds, std::int64_t nanoseconds) {
-  return static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
-}
 
 /// Seconds since 1970 of a date and a time of day in UTC, `2011-09-26 13:02:25.964389445`; a T may stand between the
 /// two. Nothing where it is no such text.
