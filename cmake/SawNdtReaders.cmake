@@ -1,11 +1,12 @@
 # saw_ndt_add_reader(NAME HEADER LIBRARIES LIBRARY... SOURCES SOURCE...): sources of saw_ndt_drives that read a kind of
-# recording by libraries which not every machine has. Where one is missing they are left out. SAW_NDT_HAS_<NAME> tells C++,
-# as 1 or 0, and openRecording() names the package that is missing. Libraries are linked by name, so that no user of an
-# installed saw_ndt has to find them.
+# recording by libraries which not every machine has. Where one is missing, or where the option SAW_NDT_WITH_<NAME> is off,
+# they are left out. SAW_NDT_HAS_<NAME> tells C++, as 1 or 0, and CMake, and openRecording() names the package that is
+# missing. Libraries are linked by name, so that no user of an installed saw_ndt has to find them.
 function(saw_ndt_add_reader name header)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "LIBRARIES;SOURCES")
   find_path(SAW_NDT_${name}_HEADER ${header})
-  set(found TRUE)
+  option(SAW_NDT_WITH_${name} "Read recordings that need ${header}, where it is there" ON)
+  set(found ${SAW_NDT_WITH_${name}})
   if(NOT SAW_NDT_${name}_HEADER)
     set(found FALSE)
   endif()
@@ -17,12 +18,14 @@ function(saw_ndt_add_reader name header)
     endif()
   endforeach()
   mark_as_advanced(SAW_NDT_${name}_HEADER)
+  set(SAW_NDT_HAS_${name} ${found} CACHE INTERNAL "")
   if(found)
     target_sources(saw_ndt_drives PRIVATE ${arg_SOURCES})
     target_link_libraries(saw_ndt_drives PRIVATE ${arg_LIBRARIES})
     target_compile_definitions(saw_ndt_drives PRIVATE SAW_NDT_HAS_${name}=1)
   else()
-    message(STATUS "${header} or lib${arg_LIBRARIES} not found: recordings that need it cannot be read")
+    list(JOIN arg_LIBRARIES ", " libraries)
+    message(STATUS "Without ${name} (${header}; ${libraries}): recordings that need it cannot be read")
     target_compile_definitions(saw_ndt_drives PRIVATE SAW_NDT_HAS_${name}=0)
   endif()
 endfunction()

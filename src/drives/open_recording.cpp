@@ -47,7 +47,7 @@ std::unique_ptr<Recording> openCapture(const fs::path& path, [[maybe_unused]] co
 #if SAW_NDT_HAS_PCAP
   return openVelodyneCapture(path, options);
 #else
-  throw Error(path.string(), "", "is a capture, which this was built without reading: libpcap-dev was missing");
+  throw Error(path.string(), "", "cannot be read, since saw_ndt was built without libpcap-dev");
 #endif
 }
 

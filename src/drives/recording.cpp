@@ -1,8 +1,8 @@
 #include "saw_ndt/drives/recording.h"
 
-#include <algorithm>
 #include <stdexcept>
 
+#include "common/middle_value.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/trajectory.h"
 
@@ -62,9 +62,7 @@ double Recording::scanPeriod() const {
     if (stamps_s[i] > stamps_s[i - 1]) periods_s.push_back(stamps_s[i] - stamps_s[i - 1]);
   }
   if (periods_s.empty()) return kNominalScanPeriod_s;
-  const auto middle = periods_s.begin() + static_cast<std::ptrdiff_t>(periods_s.size() / 2);
-  std::nth_element(periods_s.begin(), middle, periods_s.end());
-  return *middle;
+  return internal::middleValue(periods_s);
 }
 
 std::vector<StampedPose> Recording::trajectory() const {

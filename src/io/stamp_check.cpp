@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <sstream>
 
+#include "common/middle_value.h"
+
 namespace saw_ndt::internal {
 
 namespace {
@@ -67,11 +69,11 @@ std::vector<std::string> oddStamps(const std::vector<double>& stamps_s) {
   }
   std::vector<std::string> findings;
   if (!steps_s.empty()) {
-    const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-    std::nth_element(steps_s.begin(), middle, steps_s.end());
-    const std::string unit = unitOf(*middle);
+    const double typical_step_s = middleValue(steps_s);
+    const std::string unit = unitOf(typical_step_s);
     if (!unit.empty()) {
-      findings.push_back("stamps are " + textOf(*middle) + " apart, where seconds are needed; they may be " + unit);
+      findings.push_back("stamps are " + textOf(typical_step_s) + " apart, where seconds are needed; they may be " +
+                         unit);
     }
     const double least_step_s = *std::min_element(steps_s.begin(), steps_s.end());
     if (lookRounded(equal, least_step_s, stamps_s)) {

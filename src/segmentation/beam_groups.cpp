@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/middle_value.h"
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/point_measurements.h"
 #include "segmentation/ring_runs.h"
@@ -17,12 +18,6 @@ constexpr std::size_t kLeastPoints = 8;
 // Sensors measure from a ring of some centimetres rather than from a point: near returns are off their beam.
 constexpr float kLeastRange_m = 1.0F;
 
-double medianOf(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct Direction {
   double elevation_deg;
   double azimuth_deg;
@@ -35,9 +30,9 @@ BeamGroup groupOf(int number, const std::vector<Direction>& directions) {
   group.points = directions.size();
   std::vector<double> values;
   for (const Direction& direction : directions) values.push_back(direction.elevation_deg);
-  group.elevation_deg = medianOf(values);
+  group.elevation_deg = middleValue(values);
   for (double& value : values) value = std::abs(value - group.elevation_deg);
-  group.spread_deg = medianOf(values);
+  group.spread_deg = middleValue(values);
   values.clear();
   for (const Direction& direction : directions) values.push_back(direction.azimuth_deg);
   std::sort(values.begin(), values.end());
@@ -47,7 +42,7 @@ BeamGroup groupOf(int number, const std::vector<Direction>& directions) {
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (values[i] - values[i - 1] > kLeastStep_deg) steps.push_back(values[i] - values[i - 1]);
   }
-  if (steps.size() >= kLeastPoints) group.step_deg = medianOf(steps);
+  if (steps.size() >= kLeastPoints) group.step_deg = middleValue(steps);
   return group;
 }
 
@@ -100,7 +95,7 @@ bool BeamGroups::areBeams() const {
   if (!numbered && points_spread > kMostPointsInSpreadRuns * points) return false;
   std::sort(elevations.begin(), elevations.end());
   for (std::size_t i = 1; i < elevations.size(); ++i) gaps.push_back(elevations[i] - elevations[i - 1]);
-  return medianOf(spreads) < medianOf(gaps);
+  return middleValue(spreads) < middleValue(gaps);
 }
 
 bool BeamGroups::areInOrder() const {

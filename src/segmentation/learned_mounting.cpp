@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <random>
 
+#include "common/middle_value.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/segmentation/scan_segmenter.h"
 #include "saw_ndt/segmentation/sensor_setup.h"
@@ -142,12 +143,6 @@ std::optional<Plane> fitted(const Plane& plane, const Points& points) {
   return better;
 }
 
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::optional<LearnedMounting> learnMounting(const ScanView& scan) {
@@ -201,8 +196,9 @@ std::optional<LearnedMounting> learnMounting(const std::vector<ScanView>& scans)
     heights_m.push_back(mounting->height_m);
   }
   if (pitches_deg.empty()) return std::nullopt;
-  const double roll_deg = medianOf(rolls_deg);
-  return LearnedMounting{medianOf(pitches_deg), roll_deg - 360.0 * std::round(roll_deg / 360.0), medianOf(heights_m)};
+  const double roll_deg = middleValue(rolls_deg);
+  return LearnedMounting{middleValue(pitches_deg), roll_deg - 360.0 * std::round(roll_deg / 360.0),
+                         middleValue(heights_m)};
 }
 
 SegmentationOptions withMounting(const SegmentationOptions& options, const LearnedMounting& mounting,

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/middle_value.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt::internal {
@@ -21,12 +22,6 @@ constexpr double kElevationMarginDeg = 1.5;
 constexpr std::size_t kSamplesOfRun = 32;
 constexpr std::size_t kSamplesOfScan = 2048;
 constexpr double kMostRings = 1024.0;
-
-float medianOf(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 [[noreturn]] void refuseRing(double ring, std::size_t point, const SensorModel& sensor) {
   std::ostringstream message;
@@ -187,10 +182,10 @@ bool RingIndex::matchRunsToBeams(const ScanView& scan, const PointMeasurements& 
       if (points.range[i] > 0.0F) samples_.push_back(points.elevationSine(scan, i));
     }
     if (samples_.empty()) samples_.push_back(0.0F);
-    const float median = medianOf(samples_);
+    const float median = middleValue(samples_);
     for (float& sample : samples_) sample = std::abs(sample - median);
     run_elevations_[run] = static_cast<float>(degreesFromRadians(std::asin(std::clamp(median, -1.0F, 1.0F))));
-    run_spreads_[run] = static_cast<float>(degreesFromRadians(medianOf(samples_)));
+    run_spreads_[run] = static_cast<float>(degreesFromRadians(middleValue(samples_)));
     if (run_spreads_[run] > kGreatestSpreadOfRunDeg) points_spread += end - runs_[run].begin;
   }
   if (static_cast<double>(points_spread) > kMostPointsInSpreadRuns * static_cast<double>(scan.size)) return false;
