@@ -9,7 +9,10 @@ void RecordingArgument::addTo(AppOptions& app, bool with_poses) {
                   "of the left camera where there is its calibration (default: those of the bag, KITTI's oxts, or "
                   "poses.txt in or above the folder, or ../../poses/<name>.txt)");
   }
-  app.addOption("topic", &values_.topic, "NAME", "point clouds of a bag (default: the only topic of such)");
+  app.addOption("topic", &values_.topic, "NAME",
+                "point clouds of a bag (default: the only topic of such), or address of the sensor in a capture "
+                "(default: that with "
+                "the most packets)");
   app.addOption("pose-topic", &values_.pose_topic, "NAME",
                 "reference poses of a bag (PoseStamped, PoseWithCovarianceStamped or Odometry), or `tf`, or `none` "
                 "(default: the only topic of such, else tf)");

@@ -15,7 +15,7 @@ class RecordingArgument {
   /// What a SEQUENCE may be, for the help.
   static constexpr char kKinds[] =
       "a recording: a folder in the layout of KITTI odometry, raw or tracking, a folder of .pcd, .ply or .bin files, "
-      "a bag of ROS 1 or 2 (.bag, .db3, .mcap or its folder), a capture of a Velodyne (.pcap)";
+      "a bag of ROS 1 or 2 (.bag, .db3, .mcap or its folder), a capture of a Velodyne (.pcap, .pcapng)";
 
   /// Declares them, -poses but for apps that take several recordings.
   void addTo(AppOptions& app, bool with_poses = true);

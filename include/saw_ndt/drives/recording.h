@@ -84,7 +84,9 @@ struct RecordingOptions {
   std::filesystem::path poses_file;
   int bin_fields = 0;         ///< floats a point of .bin files: 4, 5 or 6; 0: told from the values
   double scan_rate_hz = 0.0;  ///< gives scans stamps where the recording has none; 0: they have none then
-  std::string topic;          ///< of the point clouds of a bag; empty: the only one
+  /// Of the point clouds of a bag, empty: the only one; the address of the sensor in a capture, empty: the one with the
+  /// most packets.
+  std::string topic;
   /// Of the poses of a bag, or `tf`, or `none`; empty: the only one of poses, else tf where it has the LiDAR's frame.
   std::string pose_topic;
   std::string fixed_frame;  ///< of tf, in which poses are; empty: the root of the LiDAR's frame
@@ -94,7 +96,7 @@ struct RecordingOptions {
 
 /// Opens a recording of any kind, told apart by what is there: a folder in the layout of KITTI odometry (`velodyne/`)
 /// or of KITTI raw data (`velodyne_points/`); a folder of .pcd, .ply or .bin files; a bag of ROS 1 (.bag) or ROS 2
-/// (.db3, .mcap, or the folder of one); a capture of a Velodyne (.pcap). Files are told by their first bytes.
+/// (.db3, .mcap, or the folder of one); a capture of a Velodyne (.pcap, .pcapng). Files are told by their first bytes.
 /// Throws Error where there is no such recording, or where this library was built without what reads it, and
 /// std::invalid_argument for options that do not hold.
 SAW_NDT_EXPORT std::unique_ptr<Recording> openRecording(const std::filesystem::path& path,
