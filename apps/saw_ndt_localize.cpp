@@ -13,7 +13,8 @@ namespace {
 
 constexpr char kDescription[] =
     "Follows a drive through a map, scan by scan, and writes trajectory_tum.txt (poses of the base), "
-    "trajectory_kitti.txt (of the left camera), frames.csv (a line a scan) and summary.json into OUT_DIR; the summary "
+    "trajectory_kitti.txt (of the left camera where the recording tells its place, else of the LiDAR), frames.csv (a "
+    "line a scan) and summary.json into OUT_DIR; the summary "
     "is printed too. A scan that is rejected gets the pose that was predicted for it, and none as long as nobody knows "
     "where the vehicle is; where none is located the drive has failed. The sensor must be alike that of the map; the "
     "rule and slope of the ground are those of the map unless stated. Where reference poses exist, that of the first "

@@ -69,7 +69,9 @@ TEST_F(LiveLocalizeApp, PosesComeScanByScanAndAnInterruptionWritesAllResults) {
   for (int scan = 0; scan < kScans; ++scan) {
     give(scan);
     // The first five tell of the sensor before any is localized.
-    if (scan >= 4) ASSERT_TRUE(waitForLines(stream, scan + 1)) << contentOf(errors);
+    if (scan >= 4) {
+      ASSERT_TRUE(waitForLines(stream, scan + 1)) << contentOf(errors);
+    }
   }
   EXPECT_TRUE(program.running());
   EXPECT_EQ(interrupt(program, SIGINT), 0) << contentOf(errors);

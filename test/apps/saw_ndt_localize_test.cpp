@@ -266,7 +266,7 @@ TEST_F(LocalizeApp, BadDrivesAreNamedAndNothingStaysBehind) {
   replace("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\n");
   expectLocalizeFails(1, {"calib.txt: no line Tr"});
   replace("calib.txt", calib);
-  expectFails(SAW_NDT_APP, quoted(folder.path()) + quoted(map_file) + quoted(out), 1, {"velodyne: No such file"});
+  expectFails(SAW_NDT_APP, quoted(folder.path()) + quoted(map_file) + quoted(out), 1, {"holds no recording"});
 }
 
 TEST_F(LocalizeApp, AScanThatCannotBeReadIsRejectedAndTheOthersAreLocalized) {
