@@ -148,8 +148,9 @@ GnuplotPicture timePicture(const std::string& name, const std::string& title, co
   std::ostringstream draw;
   draw.precision(12);
   const double height_px = picture.height_px;
-  draw << kStyle << "set xrange [" << times_s.front() << ':' << std::max(times_s.back(), times_s.front() + 1e-3)
-       << "]\nset lmargin at screen 0.085\nset rmargin at screen 0.97\nset key at graph 1.0,1.02 right bottom "
+  const double margin_s = std::max(0.01 * (times_s.back() - times_s.front()), 1e-3);
+  draw << kStyle << "set xrange [" << times_s.front() - margin_s << ':' << times_s.back() + margin_s
+       << "]\nset lmargin at screen 0.1\nset rmargin at screen 0.97\nset key at graph 1.0,1.02 right bottom "
           "horizontal Left reverse\n"
        << "set multiplot title " << gnuplotQuoted(title) << '\n';
   const std::string style = times_s.size() < 250 ? "with linespoints pt 7 ps 0.4 lw 1.5" : "with lines lw 0.9";
