@@ -123,9 +123,6 @@ void WeightedMapBuilder::requireKind(bool labelled) const {
   if (!isEmpty() && origin_.labelled != labelled) {
     throw std::invalid_argument("a map holds either labelled or unlabelled clouds, not both");
   }
-  if (!labelled && origin_.segmentation) {
-    throw std::invalid_argument("the segmentation of the scans has been given, but a scan has no labels");
-  }
 }
 
 void WeightedMapBuilder::beginAdding(bool labelled, const std::string& software_version) {
@@ -140,6 +137,9 @@ void WeightedMapBuilder::beginAdding(bool labelled, const std::string& software_
 void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
                                  int threads) {
   if (!T_map_scan.matrix().allFinite()) throw std::invalid_argument("T_map_scan is not finite");
+  if (!labels.known() && origin_.segmentation) {
+    throw std::invalid_argument("the segmentation of the scans has been given, but a scan has no labels");
+  }
   requireKind(labels.known());
   beginAdding(labels.known(), SAW_NDT_VERSION);
   const auto scan = static_cast<std::uint32_t>(++origin_.scan_count);
@@ -176,10 +176,9 @@ void WeightedMapBuilder::merge(const MapOrigin& origin, const std::vector<Labell
   checkOption(origin.resolution_m == origin_.resolution_m, "resolution_m", fieldText(origin.resolution_m),
               ("that of the map merged into, " + fieldText(origin_.resolution_m)).c_str());
   const bool adds = origin.scan_count != 0 || !entries.empty();
-  const bool is_other_kind = adds && !isEmpty() && origin.labelled != origin_.labelled;
-  if (!is_other_kind) requireSameSegmentation(origin_.segmentation, origin.segmentation);
+  if (adds) requireKind(origin.labelled);
+  requireSameSegmentation(origin_.segmentation, origin.segmentation);
   if (!adds) return;
-  requireKind(origin.labelled);
   requireRoomFor(origin, entries);
   beginAdding(origin.labelled, origin.software_version);
   table_->add(entries,
