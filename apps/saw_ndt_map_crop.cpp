@@ -4,6 +4,7 @@
 #include "app_options.h"
 #include "common/atomic_output.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/io/kitti.h"
 #include "saw_ndt/io/polygon_file.h"
 #include "saw_ndt/io/trajectory.h"
 #include "saw_ndt/map/map_crop.h"
@@ -21,7 +22,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Where a cropped map lies, as the command line states it.
 struct RegionArguments {
   std::vector<double> box_m, z_range_m;
-  std::string polygon_file, trajectory_file;
+  std::string polygon_file, trajectory_file, calibration_file;
   double radius_m = 50.0;
 
   void addTo(saw_ndt::AppOptions& app) {
@@ -32,6 +33,10 @@ struct RegionArguments {
     app.addOption("around", &trajectory_file, "TRAJECTORY",
                   "poses in the map as TUM, CSV or KITTI; the line through them is what counts");
     app.addOption("radius", &radius_m, "METRES", "greatest horizontal distance from -around");
+    app.addOption(
+        "calib", &calibration_file, "FILE",
+        "calib.txt with Tr (LiDAR to left camera), where -around is a KITTI file of poses of the left camera; "
+        "without it poses are of the LiDAR");
     app.addOption("z-range", &z_range_m, "Z,Z", "least and greatest height, besides, metres in the map");
   }
 
@@ -42,9 +47,15 @@ struct RegionArguments {
       });
     }
     if (!polygon_file.empty()) return saw_ndt::polygonRegion(saw_ndt::readPolygon(polygon_file));
+    const saw_ndt::Trajectory trajectory = saw_ndt::readTrajectory(trajectory_file);
+    if (!calibration_file.empty() && trajectory.format != saw_ndt::TrajectoryFormat::KITTI) {
+      throw saw_ndt::UsageError("-calib goes with a KITTI file, which " + trajectory_file + " is not");
+    }
+    const Eigen::Isometry3d Tr =
+        calibration_file.empty() ? Eigen::Isometry3d::Identity() : saw_ndt::readKittiCalibration(calibration_file);
     std::vector<Eigen::Vector2d> points_m;
-    for (const saw_ndt::StampedPose& pose : saw_ndt::readTrajectory(trajectory_file).poses) {
-      points_m.push_back(pose.T_map_body.translation().head<2>());
+    for (const saw_ndt::StampedPose& pose : trajectory.poses) {
+      points_m.push_back(saw_ndt::lidarPose(pose.T_map_body, Tr).translation().head<2>());
     }
     return saw_ndt::checkedUsage([&] { return saw_ndt::regionAround(points_m, radius_m); });
   }
@@ -53,7 +64,9 @@ struct RegionArguments {
     const int ways = static_cast<int>(app.isGiven("box")) + static_cast<int>(app.isGiven("polygon")) +
                      static_cast<int>(app.isGiven("around"));
     if (ways != 1) throw saw_ndt::UsageError("one of -box, -polygon and -around is needed");
-    if (app.isGiven("radius") && !app.isGiven("around")) throw saw_ndt::UsageError("-radius goes with -around");
+    for (const std::string name : {"radius", "calib"}) {
+      if (app.isGiven(name) && !app.isGiven("around")) throw saw_ndt::UsageError("-" + name + " goes with -around");
+    }
     if (!box_m.empty() && box_m.size() != 4) throw saw_ndt::UsageError("option -box: 4 numbers are needed");
     const saw_ndt::MapRegion inside = horizontal();
     if (z_range_m.empty()) return inside;

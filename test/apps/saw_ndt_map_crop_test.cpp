@@ -66,6 +66,10 @@ TEST_F(MapCropApp, ToWhatLiesAroundATrajectory) {
   EXPECT_EQ(cropped("-around " + path("line.csv") + "-radius 0.75"), 20U * 4U * 2U);
   folder.write("kitti.txt", "1 0 0 0.25 0 1 0 0.25 0 0 1 0\n");
   EXPECT_EQ(cropped("-around " + path("kitti.txt") + "-radius 0.5"), 3U * 2U);
+  // The camera looks along x of the LiDAR, which is at (0.75, 0.25).
+  folder.write("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
+  folder.write("camera.txt", "1 0 0 -0.25 0 1 0 9 0 0 1 0.75\n");
+  EXPECT_EQ(cropped("-around " + path("camera.txt") + "-radius 0.6 -calib " + path("calib.txt")), 4U * 2U);
 }
 
 TEST_F(MapCropApp, HalvesMergeIntoTheWhole) {
@@ -98,6 +102,8 @@ TEST_F(MapCropApp, SaysWhatIsWrongAndLeavesNothingBehind) {
   expectCropFails(1, "-polygon " + path("names.csv"), {"names.csv: names no column x"});
   expectCropFails(1, "-around " + path("two.txt"), {"two.txt: line 1"});
   folder.write("tum.txt", "0 0 0 0 0 0 0 1\n");
+  expectCropFails(2, "-around " + path("tum.txt") + "-calib " + path("calib.txt"), {"-calib", "tum.txt is not"});
+  expectCropFails(2, "-box 0,0,1,1 -calib calib.txt", {"-calib goes with -around"});
   expectCropFails(2, "-radius -1 -around " + path("tum.txt"), {"radius_m = -1"});
   expectFails(SAW_NDT_APP, path("none.map") + path("out.map") + "-box 0,0,1,1", 1, {"none.map: cannot be opened"});
   expectFails(SAW_NDT_APP, path("whole.map") + path("no/out.map") + "-box 0,0,1,1", 1, {"out.map: No such file"});
