@@ -41,7 +41,7 @@ std::string setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt:
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string sequence, map_file, scans = ":";
+  std::string sequence, map_file, scans = ":", shard = "1/1";
   bool classical = false, strict = false;
   saw_ndt::DriveMapOptions options;
   saw_ndt::SegmentationArguments segmentation;
@@ -52,6 +52,10 @@ int main(int argc, char** argv) {
   app.addPositional("MAP", &map_file, "map file to write");
   app.addOption("resolution", &options.resolution_m, "METRES", "edge of the smallest voxels that methods can match");
   app.addOption("scans", &scans, "SLICE", "scans to use, first:last:step as in Python: `0:70:2`, or all with `:`");
+  app.addOption("shard", &shard, "I/N",
+                "of these scans every N-th one beginning with the I-th (1 to N), so that N jobs share the work: "
+                "saw_ndt_map_merge makes of their maps the one of all scans. Sensor, mounting and motion compensation "
+                "are learned as for all of them");
   app.addFlag("classical", &classical, "do not segment: raw points without labels");
   app.addFlag("strict", &strict, "a scan that cannot be read is an error, and nothing is written");
   motion.addTo(app);
@@ -62,6 +66,7 @@ int main(int argc, char** argv) {
     const std::unique_ptr<saw_ndt::Recording> recording = recording_argument.open(sequence);
     const std::vector<int> selected =
         saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, recording->scanCount()); });
+    const std::vector<int> mapped = saw_ndt::checkedUsage([&] { return saw_ndt::parseScanShard(shard, selected); });
     options.threads = app.threads();
     options.segmentation = segmentation.stated();
     saw_ndt::checkedUsage([&] { return saw_ndt::WeightedMapBuilder(options.resolution_m); });
@@ -79,7 +84,7 @@ int main(int argc, char** argv) {
     }
 
     const std::string motion_text = setMotionCompensation(app, motion, *recording, selected, options);
-    saw_ndt::ProgressBar progress(selected.size());
+    saw_ndt::ProgressBar progress(mapped.size());
     std::vector<std::string> left_out;
     if (!strict) {
       options.scan_left_out = [&](const std::string& failure) {
@@ -88,7 +93,7 @@ int main(int argc, char** argv) {
       };
     }
     const saw_ndt::WeightedVoxelMap map =
-        saw_ndt::buildDriveMap(*recording->scans(selected), options, [&] { progress.step(); }).build();
+        saw_ndt::buildDriveMap(*recording->scans(mapped), options, [&] { progress.step(); }).build();
     for (const std::string& failure : left_out) std::cerr << app.name() << ": " << failure << ": left out\n";
     map.save(map_file);
     std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution()

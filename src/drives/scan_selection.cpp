@@ -71,4 +71,25 @@ std::vector<int> parseScanSelection(const std::string& text, int scan_count) {
   return scans;
 }
 
+std::vector<int> parseScanShard(const std::string& text, const std::vector<int>& selected) {
+  const auto refuseShard = [&](const std::string& reason) {
+    throw std::invalid_argument("shard '" + text + "': " + reason);
+  };
+  std::size_t shard = 0, shard_count = 0;
+  const char* const end = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), end, shard);
+  const bool has_count = error == std::errc() && slash != end && *slash == '/';
+  if (!has_count) refuseShard("must be I/N, I from 1 to N");
+  const auto [last, count_error] = std::from_chars(slash + 1, end, shard_count);
+  if (count_error != std::errc() || last != end || shard < 1 || shard > shard_count) {
+    refuseShard("must be I/N, I from 1 to N");
+  }
+  if (shard > selected.size()) refuseShard("has none of " + std::to_string(selected.size()) + " scans");
+  std::vector<int> scans;
+  for (std::size_t i = shard - 1; i < selected.size(); i += std::min(shard_count, selected.size())) {
+    scans.push_back(selected[i]);
+  }
+  return scans;
+}
+
 }  // namespace saw_ndt

@@ -50,8 +50,8 @@ void CoarseSums::add(const LabelledVoxelSums* first, const LabelledVoxelSums* la
 }
 
 void CoarseSums::add(const CoarseSums& other) {
-  table_.add(other.table_,
-             [this](std::size_t place, const LabelledVoxelSums& from) { countScans(from, table_.entry(place)); });
+  table_.add(other.table_.entries(),
+             [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { countScans(from, into); });
 }
 
 std::vector<LabelledVoxelSums> CoarseSums::takeInMapOrder() {

@@ -28,8 +28,7 @@ MapEntryLayout entryAt(const MapPart& part, std::size_t i) {
 // was made to mislead from overflowing what is computed with them.
 bool canBeSums(const VoxelSums& sums) {
   constexpr std::uint64_t kHalf = kStepsPerVoxel / 2;
-  constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 33;
-  if (sums.count == 0 || sums.count > kMostPoints) return false;
+  if (sums.count == 0 || sums.count > VoxelSums::kMostPoints) return false;
   const auto within = [](std::int64_t value, std::uint64_t limit) {
     const auto bits = static_cast<std::uint64_t>(value);
     return (value < 0 ? std::uint64_t{0} - bits : bits) <= limit;

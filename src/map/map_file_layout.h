@@ -62,9 +62,6 @@ struct MapEntryLayout {
 };
 static_assert(sizeof(MapEntryLayout) == 84);
 
-/// What MapEntryLayout has room for: where more scans met a voxel, this is told.
-constexpr std::uint32_t kMostScans = (1U << 24U) - 1;
-
 inline std::uint32_t checksumOf(const void* bytes, std::size_t size, std::uint32_t before = 0) {
   return static_cast<std::uint32_t>(crc32_z(before, static_cast<const Bytef*>(bytes), size));
 }

@@ -5,6 +5,7 @@
 #include "map/map_file.h"
 #include "map/map_file_layout.h"
 #include "map/map_metadata.h"
+#include "map/voxel_sums_table.h"
 
 namespace saw_ndt::internal {
 namespace {
@@ -15,7 +16,7 @@ MapEntryLayout encoded(const LabelledVoxelSums& entry) {
   for (int axis = 0; axis < 3; ++axis) layout.place[axis] = static_cast<std::uint8_t>(place[axis]);
   layout.label = static_cast<std::uint8_t>(entry.label);
   layout.count = entry.sums.count;
-  layout.scan_count = std::min(entry.scan_count, kMostScans);
+  layout.scan_count = std::min(entry.scan_count, kMostScansOfVoxel);
   for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) layout.sum[i] = entry.sums.sum[i];
   for (std::size_t i = 0; i < entry.sums.product.size(); ++i) layout.product[i] = entry.sums.product[i];
   return layout;

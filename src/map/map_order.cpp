@@ -69,6 +69,23 @@ void sortKeys(std::vector<Key>& keys) {
   }
 }
 
+// Puts the entry that each key names in the key's place, cycle by cycle: without a second copy of a whole map.
+void moveInto(std::vector<Key>& keys, std::vector<LabelledVoxelSums>& entries) {
+  for (std::uint32_t start = 0; start < keys.size(); ++start) {
+    if (keys[start].entry == start) continue;
+    const LabelledVoxelSums first = entries[start];
+    std::uint32_t place = start;
+    while (keys[place].entry != start) {
+      const std::uint32_t from = keys[place].entry;
+      entries[place] = entries[from];
+      keys[place].entry = place;
+      place = from;
+    }
+    entries[place] = first;
+    keys[place].entry = place;
+  }
+}
+
 }  // namespace
 
 void sortIntoMapOrder(std::vector<LabelledVoxelSums>& entries) {
@@ -79,10 +96,7 @@ void sortIntoMapOrder(std::vector<LabelledVoxelSums>& entries) {
     return;
   }
   sortKeys(keys);
-  std::vector<LabelledVoxelSums> sorted;
-  sorted.reserve(entries.size());
-  for (const Key& key : keys) sorted.push_back(entries[key.entry]);
-  entries.swap(sorted);
+  moveInto(keys, entries);
 }
 
 }  // namespace saw_ndt::internal

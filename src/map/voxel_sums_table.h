@@ -8,6 +8,9 @@
 
 namespace saw_ndt::internal {
 
+/// Where more scans met a voxel, this is told: map files have room for it.
+constexpr std::uint32_t kMostScansOfVoxel = (1U << 24U) - 1;
+
 /// A well-mixed hash of three voxel or brick coordinates.
 inline std::uint64_t hashCoordinate(const Eigen::Vector3i& c) {
   std::uint64_t h = static_cast<std::uint32_t>(c.x()) * 0x9E3779B97F4A7C15ull;
@@ -22,15 +25,17 @@ class VoxelSumsTable {
  public:
   VoxelSumsTable() : slots_(kMinSlots) {}
 
+  /// The entry of `label` in `voxel`; null where there is none.
+  const LabelledVoxelSums* find(const VoxelCoordinate& voxel, StructuralLabel label) const {
+    const Slot& slot = slots_[slotOf(voxel, label, hashOf(voxel, label))];
+    return slot.place == kEmpty ? nullptr : &entries_[slot.place];
+  }
+
   /// The place in entries() of `label` in `voxel`, made empty where there is none yet.
   std::size_t placeOf(const VoxelCoordinate& voxel, StructuralLabel label) {
     const std::uint32_t hash = hashOf(voxel, label);
-    std::size_t slot = hash & mask();
-    for (; slots_[slot].place != kEmpty; slot = (slot + 1) & mask()) {
-      if (slots_[slot].hash != hash) continue;
-      const LabelledVoxelSums& entry = entries_[slots_[slot].place];
-      if (entry.voxel == voxel && entry.label == label) return slots_[slot].place;
-    }
+    const std::size_t slot = slotOf(voxel, label, hash);
+    if (slots_[slot].place != kEmpty) return slots_[slot].place;
     const std::size_t place = entries_.size();
     slots_[slot] = {hash, static_cast<std::uint32_t>(place)};
     entries_.push_back({voxel, label, {}, 0});
@@ -43,20 +48,22 @@ class VoxelSumsTable {
   VoxelSums& sums(std::size_t place) { return entries_[place].sums; }
 
   LabelledVoxelSums& entry(std::size_t place) { return entries_[place]; }
-  /// Counts a scan, by its number from 1 on, towards the entry at a place, once however often it is told.
+  /// Counts a scan, by its number from 1 on, towards the entry at a place, once however often it is told; to be called
+  /// before the scan's points are added. Where the scans of points before are not known, it stays so.
   void meet(std::size_t place, std::uint32_t scan) {
     if (last_scan_[place] == scan) return;
     last_scan_[place] = scan;
-    ++entries_[place].scan_count;
+    LabelledVoxelSums& entry = entries_[place];
+    if (entry.scan_count != 0 || entry.sums.count == 0) ++entry.scan_count;
   }
 
-  /// Adds the sums of another table, and calls count_scans(place, entry of the other) for each of its entries.
+  /// Adds other sums; calls count_scans(entry of the other, entry here before its sums are added, its place) for each.
   template <typename CountScans>
-  void add(const VoxelSumsTable& other, const CountScans& count_scans) {
-    for (const LabelledVoxelSums& from : other.entries_) {
+  void add(const std::vector<LabelledVoxelSums>& others, const CountScans& count_scans) {
+    for (const LabelledVoxelSums& from : others) {
       const std::size_t place = placeOf(from.voxel, from.label);
+      count_scans(from, entries_[place], place);
       entries_[place].sums += from.sums;
-      count_scans(place, from);
     }
   }
 
@@ -82,6 +89,17 @@ class VoxelSumsTable {
     return static_cast<std::uint32_t>(hashCoordinate(voxel)) + static_cast<std::uint32_t>(label) * 0x9E3779B9u;
   }
   std::size_t mask() const { return slots_.size() - 1; }
+
+  // Of the entry, or the empty one for it.
+  std::size_t slotOf(const VoxelCoordinate& voxel, StructuralLabel label, std::uint32_t hash) const {
+    std::size_t slot = hash & mask();
+    for (; slots_[slot].place != kEmpty; slot = (slot + 1) & mask()) {
+      if (slots_[slot].hash != hash) continue;
+      const LabelledVoxelSums& entry = entries_[slots_[slot].place];
+      if (entry.voxel == voxel && entry.label == label) break;
+    }
+    return slot;
+  }
 
   void grow() {
     std::vector<Slot> old(2 * slots_.size());

@@ -1,6 +1,8 @@
 #include "saw_ndt/map/weighted_map_builder.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -13,6 +15,7 @@
 #include "map/voxel_sums_table.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/version.h"
+#include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
 namespace {
@@ -74,12 +77,24 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
 void requireSameSegmentation(const std::optional<SegmentationOptions>& into,
                              const std::optional<SegmentationOptions>& from) {
   if (into.has_value() != from.has_value()) {
-    throw std::invalid_argument("segmentation: known of one of the builders to merge and not known of the other");
+    throw std::invalid_argument("segmentation: known of one of the maps to merge and not known of the other");
   }
   if (!into) return;
   if (const auto difference = firstDifference(*into, *from)) {
-    throw std::invalid_argument("segmentation: the builders to merge differ in " + difference->field + ", which is " +
+    throw std::invalid_argument("segmentation: the maps to merge differ in " + difference->field + ", which is " +
                                 difference->first + " in one and " + difference->second + " in the other");
+  }
+}
+
+// To be called before the sums are added; the order of additions does not matter. 0: not known of some of the points.
+void addScanCount(const LabelledVoxelSums& from, LabelledVoxelSums& into) {
+  if (into.sums.count == 0) {
+    into.scan_count = from.scan_count;
+  } else if (into.scan_count == 0 || from.scan_count == 0) {
+    into.scan_count = 0;
+  } else {
+    const std::uint64_t scan_count = std::uint64_t{into.scan_count} + from.scan_count;
+    into.scan_count = static_cast<std::uint32_t>(std::min<std::uint64_t>(scan_count, kMostScansOfVoxel));
   }
 }
 
@@ -102,21 +117,31 @@ WeightedMapBuilder& WeightedMapBuilder::operator=(const WeightedMapBuilder& othe
 }
 WeightedMapBuilder& WeightedMapBuilder::operator=(WeightedMapBuilder&& other) noexcept = default;
 
-void WeightedMapBuilder::requireKind(bool labelled) {
-  if (!labelled && origin_.segmentation) {
-    throw std::invalid_argument("the segmentation of the scans has been given, but a scan has no labels");
-  }
-  if (origin_.scan_count == 0) {
-    origin_.labelled = labelled;
-  } else if (origin_.labelled != labelled) {
+bool WeightedMapBuilder::isEmpty() const { return origin_.scan_count == 0 && table_->entries().empty(); }
+
+void WeightedMapBuilder::requireKind(bool labelled) const {
+  if (!isEmpty() && origin_.labelled != labelled) {
     throw std::invalid_argument("a map holds either labelled or unlabelled clouds, not both");
+  }
+}
+
+void WeightedMapBuilder::beginAdding(bool labelled, const std::string& software_version) {
+  if (isEmpty()) {
+    origin_.labelled = labelled;
+    origin_.software_version = software_version;
+  } else if (origin_.software_version != software_version) {
+    origin_.software_version.clear();
   }
 }
 
 void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
                                  int threads) {
   if (!T_map_scan.matrix().allFinite()) throw std::invalid_argument("T_map_scan is not finite");
+  if (!labels.known() && origin_.segmentation) {
+    throw std::invalid_argument("the segmentation of the scans has been given, but a scan has no labels");
+  }
   requireKind(labels.known());
+  beginAdding(labels.known(), SAW_NDT_VERSION);
   const auto scan = static_cast<std::uint32_t>(++origin_.scan_count);
   const PointPlacement placement = placementOf(T_map_scan, origin_.resolution_m);
   const std::size_t most_parts = std::max<std::size_t>(1, points.size / kMinPointsPerThread);
@@ -136,22 +161,43 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
     parts[p].point_count = addRange(points, labels, start(p), start(p + 1), placement, scan, parts[p].table);
   });
   for (const Part& part : parts) {
-    table_->add(part.table, [&](std::size_t place, const LabelledVoxelSums&) { table_->meet(place, scan); });
+    table_->add(part.table.entries(), [&](const LabelledVoxelSums&, const LabelledVoxelSums&, std::size_t place) {
+      table_->meet(place, scan);
+    });
     origin_.point_count += part.point_count;
   }
 }
 
-void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
-  checkOption(other.origin_.resolution_m == origin_.resolution_m, "resolution_m", other.origin_.resolution_m,
-              "that of the builder merged into");
-  requireSameSegmentation(origin_.segmentation, other.origin_.segmentation);
-  if (other.origin_.scan_count == 0) return;
-  requireKind(other.origin_.labelled);
-  table_->add(*other.table_, [this](std::size_t place, const LabelledVoxelSums& from) {
-    table_->entry(place).scan_count += from.scan_count;
-  });
-  origin_.scan_count += other.origin_.scan_count;
-  origin_.point_count += other.origin_.point_count;
+void WeightedMapBuilder::merge(const WeightedMapBuilder& other) { merge(other.origin_, other.table_->entries()); }
+
+void WeightedMapBuilder::merge(const WeightedVoxelMap& map) { merge(map.origin(), map.entries()); }
+
+void WeightedMapBuilder::merge(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) {
+  checkOption(origin.resolution_m == origin_.resolution_m, "resolution_m", fieldText(origin.resolution_m),
+              ("that of the map merged into, " + fieldText(origin_.resolution_m)).c_str());
+  const bool adds = origin.scan_count != 0 || !entries.empty();
+  if (adds) requireKind(origin.labelled);
+  requireSameSegmentation(origin_.segmentation, origin.segmentation);
+  if (!adds) return;
+  requireRoomFor(origin, entries);
+  beginAdding(origin.labelled, origin.software_version);
+  table_->add(entries,
+              [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { addScanCount(from, into); });
+  origin_.scan_count += origin.scan_count;
+  origin_.point_count += origin.point_count;
+}
+
+void WeightedMapBuilder::requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const {
+  if (origin.scan_count > std::numeric_limits<std::uint64_t>::max() - origin_.scan_count) {
+    throw std::invalid_argument("scan_count: more scans than can be counted");
+  }
+  if (origin_.point_count + origin.point_count <= VoxelSums::kMostPoints) return;
+  for (const LabelledVoxelSums& from : entries) {
+    const LabelledVoxelSums* const into = table_->find(from.voxel, from.label);
+    if (into != nullptr && into->sums.count + from.sums.count > VoxelSums::kMostPoints) {
+      throw std::invalid_argument("a voxel would hold more than 2^33 points");
+    }
+  }
 }
 
 WeightedVoxelMap WeightedMapBuilder::build() const& { return {origin_, table_->entries()}; }

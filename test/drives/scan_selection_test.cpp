@@ -106,5 +106,19 @@ TEST(ScanSelection, RefusesWhatIsNoSlice) {
   }
 }
 
+TEST(ScanSelection, ShardsShareTheSelectedScansInTurn) {
+  const std::vector<int> selected = {9, 7, 5, 3, 1};
+  EXPECT_EQ(parseScanShard("1/1", selected), selected);
+  EXPECT_EQ(parseScanShard("1/2", selected), (std::vector<int>{9, 5, 1}));
+  EXPECT_EQ(parseScanShard("2/2", selected), (std::vector<int>{7, 3}));
+  EXPECT_EQ(parseScanShard("5/5", selected), (std::vector<int>{1}));
+  EXPECT_EQ(parseScanShard("2/18446744073709551615", selected), (std::vector<int>{7}));
+  expectThrows<std::invalid_argument>([&] { parseScanShard("6/7", selected); }, {"'6/7'", "none of 5 scans"});
+  for (const std::string text :
+       {"", "1", "/", "1/", "/1", "0/2", "3/2", "1/2/3", "+1/2", "1/2 ", "1/1e9", "a/2", "1/99999999999999999999"}) {
+    expectThrows<std::invalid_argument>([&] { parseScanShard(text, selected); }, {"'" + text + "'", "I/N"});
+  }
+}
+
 }  // namespace
 }  // namespace saw_ndt

@@ -37,8 +37,10 @@ inline bool quantize(const Eigen::Vector3d& position_m, double inverse_resolutio
 }
 
 /// Count, sums and products of the points of one voxel, in steps from the voxel's centre. Integers make addition exact
-/// and associative: neither the order of points, nor threads, nor merging parts changes a bit. Room for 2^33 points.
+/// and associative: neither the order of points, nor threads, nor merging parts changes a bit. Room for kMostPoints.
 struct SAW_NDT_EXPORT VoxelSums {
+  static constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 33;
+
   std::uint64_t count = 0;
   std::array<std::int64_t, 3> sum{};
   std::array<std::int64_t, 6> product{};  ///< xx xy xz yy yz zz

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/common/labels.h"
@@ -43,6 +45,12 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   /// Adds all that another builder has collected.
   /// @throws std::invalid_argument that names what differs, where resolution or segmentation are not the same
   void merge(const WeightedMapBuilder& other);
+  /// Adds all that a map holds. The map of everything has the same bytes as one that its scans had been added to, but
+  /// that the number of scans which met a voxel is not known where it is not known of a part, and the software version
+  /// where the parts are of several.
+  /// @throws std::invalid_argument as above, and where a voxel or the map would have more points or scans than there is
+  /// room for; the builder is as it was then
+  void merge(const WeightedVoxelMap& map);
 
   /// What has been added so far.
   const MapOrigin& origin() const { return origin_; }
@@ -53,7 +61,11 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   WeightedVoxelMap build() &&;
 
  private:
-  void requireKind(bool labelled);
+  bool isEmpty() const;
+  void requireKind(bool labelled) const;
+  void requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const;
+  void beginAdding(bool labelled, const std::string& software_version);
+  void merge(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries);
 
   MapOrigin origin_;
   std::unique_ptr<internal::VoxelSumsTable> table_;
