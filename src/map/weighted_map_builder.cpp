@@ -117,7 +117,21 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
                                  int threads) {
   if (!T_map_scan.matrix().allFinite()) throw std::invalid_argument("T_map_scan is not finite");
   requireKind(labels.known());
-  const auto scan = static_cast<std::uint32_t>(++origin_.scan_count);
+  ++origin_.scan_count;
+  addPoints(points, labels, T_map_scan, threads);
+}
+
+void WeightedMapBuilder::continueScan(const ScanView& points, const LabelView& labels,
+                                      const Eigen::Isometry3d& T_map_scan, int threads) {
+  if (origin_.scan_count == 0) return addScan(points, labels, T_map_scan, threads);
+  if (!T_map_scan.matrix().allFinite()) throw std::invalid_argument("T_map_scan is not finite");
+  requireKind(labels.known());
+  addPoints(points, labels, T_map_scan, threads);
+}
+
+void WeightedMapBuilder::addPoints(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
+                                   int threads) {
+  const auto scan = static_cast<std::uint32_t>(origin_.scan_count);
   const PointPlacement placement = placementOf(T_map_scan, origin_.resolution_m);
   const std::size_t most_parts = std::max<std::size_t>(1, points.size / kMinPointsPerThread);
   const int part_count =
