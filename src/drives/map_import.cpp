@@ -48,7 +48,7 @@ std::array<double, 3> originNearFirstPoints(const std::vector<fs::path>& files) 
       const bool far_out = std::abs(middle[0]) > kFarCoordinate_m || std::abs(middle[1]) > kFarCoordinate_m;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (std::abs(middle[axis]) > kFarCoordinate_m || (far_out && axis < 2)) {
-          origin_m[axis] = kOriginStep_m * std::round(middle[axis] / kOriginStep_m);
+          origin_m[axis] = kOriginStep_m * std::round(middle[axis] / kOriginStep_m) + 0.0;  // no -0
         }
       }
       return origin_m;
