@@ -37,7 +37,7 @@ std::optional<Number> parsed(std::string_view word) {
 }
 
 template <typename Number>
-bool store(std::string_view word, unsigned char* to) {
+bool storeNumber(std::string_view word, unsigned char* to) {
   std::optional<Number> number;
   if constexpr (std::is_floating_point_v<Number>) {
     const std::optional<double> value = parsed<double>(word);
@@ -62,51 +62,77 @@ bool storeAs(const PcdField& field, std::string_view word, unsigned char* to) {
   const bool is_signed = field.type == 'I';
   switch (field.size) {
     case 1:
-      return is_signed ? store<std::int8_t>(word, to) : store<std::uint8_t>(word, to);
+      return is_signed ? storeNumber<std::int8_t>(word, to) : storeNumber<std::uint8_t>(word, to);
     case 2:
-      return is_signed ? store<std::int16_t>(word, to) : store<std::uint16_t>(word, to);
+      return is_signed ? storeNumber<std::int16_t>(word, to) : storeNumber<std::uint16_t>(word, to);
     case 4:
-      if (field.type == 'F') return store<float>(word, to);
-      return is_signed ? store<std::int32_t>(word, to) : store<std::uint32_t>(word, to);
+      if (field.type == 'F') return storeNumber<float>(word, to);
+      return is_signed ? storeNumber<std::int32_t>(word, to) : storeNumber<std::uint32_t>(word, to);
     default:
-      if (field.type == 'F') return store<double>(word, to);
-      return is_signed ? store<std::int64_t>(word, to) : store<std::uint64_t>(word, to);
+      if (field.type == 'F') return storeNumber<double>(word, to);
+      return is_signed ? storeNumber<std::int64_t>(word, to) : storeNumber<std::uint64_t>(word, to);
   }
 }
 
 }  // namespace
 
+PcdAsciiRows::PcdAsciiRows(const std::filesystem::path& path, const PcdHeader& header, std::istream& stream)
+    : path_(path), header_(header), stream_(stream), line_number_(header.lines) {
+  for (const PcdField& field : header.fields) values_ += field.count;
+}
+
+std::vector<unsigned char> PcdAsciiRows::read(std::uint64_t points) {
+  const std::uint64_t point_bytes = header_.pointBytes();
+  std::vector<unsigned char> bytes(points * point_bytes);
+  unsigned char* at = bytes.data();
+  for (std::uint64_t point = 0; point < points; ++point, ++points_read_, at += point_bytes) {
+    if (!nextLine()) {
+      throw Error(
+          path_.string(), "",
+          "is damaged: it holds " + std::to_string(points_read_) + " of " + std::to_string(header_.points) + " points");
+    }
+    store(at);
+  }
+  return bytes;
+}
+
+void PcdAsciiRows::requireEnd() {
+  if (header_.others_follow || !nextLine()) return;
+  refuse("more points than the " + std::to_string(header_.points) + " announced");
+}
+
+bool PcdAsciiRows::nextLine() {
+  while (std::getline(stream_, line_)) {
+    ++line_number_;
+    if (line_.find_first_not_of(kBlanks) != std::string::npos) return true;
+  }
+  return false;
+}
+
+void PcdAsciiRows::refuse(const std::string& reason) const {
+  throw Error(path_.string(), linePlace(line_number_), reason);
+}
+
+void PcdAsciiRows::store(unsigned char* to) const {
+  const std::vector<std::string_view> words = wordsOf(line_);
+  if (words.size() != values_) {
+    refuse(std::to_string(words.size()) + " numbers, where " + std::to_string(values_) + " are needed");
+  }
+  auto word = words.begin();
+  for (const PcdField& field : header_.fields) {
+    for (std::uint64_t i = 0; i < field.count; ++i, ++word, to += field.size) {
+      if (field.name == "_" || storeAs(field, *word, to)) continue;
+      refuse("'" + std::string(word->substr(0, 40)) + "' is no number of the field " + field.name + " (" +
+             std::string(1, field.type) + " of " + std::to_string(field.size) + " bytes)");
+    }
+  }
+}
+
 std::vector<unsigned char> readPcdAscii(const std::filesystem::path& path, const PcdHeader& header,
                                         std::istream& stream) {
-  std::size_t values = 0;
-  for (const PcdField& field : header.fields) values += field.count;
-  std::vector<unsigned char> bytes(header.points * header.pointBytes());
-  unsigned char* at = bytes.data();
-  std::size_t number = header.lines;
-  std::size_t points = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    const auto refuse = [&](const std::string& reason) { throw Error(path.string(), linePlace(number), reason); };
-    const std::vector<std::string_view> words = wordsOf(line);
-    if (words.empty()) continue;
-    if (header.others_follow && points == header.points) break;
-    if (++points > header.points) refuse("more points than the " + std::to_string(header.points) + " announced");
-    if (words.size() != values) {
-      refuse(std::to_string(words.size()) + " numbers, where " + std::to_string(values) + " are needed");
-    }
-    auto word = words.begin();
-    for (const PcdField& field : header.fields) {
-      for (std::uint64_t i = 0; i < field.count; ++i, ++word, at += field.size) {
-        if (field.name == "_" || storeAs(field, *word, at)) continue;
-        refuse("'" + std::string(word->substr(0, 40)) + "' is no number of the field " + field.name + " (" +
-               std::string(1, field.type) + " of " + std::to_string(field.size) + " bytes)");
-      }
-    }
-  }
-  if (points < header.points) {
-    throw Error(path.string(), "",
-                "is damaged: it holds " + std::to_string(points) + " of " + std::to_string(header.points) + " points");
-  }
+  PcdAsciiRows rows(path, header, stream);
+  std::vector<unsigned char> bytes = rows.read(header.points);
+  rows.requireEnd();
   return bytes;
 }
 

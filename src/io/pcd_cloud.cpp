@@ -25,39 +25,15 @@ bool equalButForCase(std::string_view a, std::string_view b) {
   });
 }
 
-std::vector<unsigned char> readBytes(const std::filesystem::path& path, std::istream& stream, std::uint64_t size) {
-  std::vector<unsigned char> bytes(size);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!stream) throw Error(path.string(), "", "could not be read on");
-  return bytes;
-}
-
 std::vector<unsigned char> readCompressed(const std::filesystem::path& path, std::istream& stream) {
   std::uint32_t sizes[2] = {0, 0};
   stream.read(reinterpret_cast<char*>(sizes), sizeof(sizes));
-  const std::vector<unsigned char> compressed = readBytes(path, stream, sizes[0]);
+  const std::vector<unsigned char> compressed = readCloudBytes(path, stream, sizes[0]);
   std::vector<unsigned char> bytes(sizes[1]);
   if (pcl::lzfDecompress(compressed.data(), sizes[0], bytes.data(), sizes[1]) != sizes[1]) {
     throw Error(path.string(), "", "is damaged: the compressed data do not give the bytes that they should");
   }
   return bytes;
-}
-
-PcdCloud cloudWithoutBytes(const PcdHeader& header) {
-  PcdCloud cloud;
-  cloud.points = header.points;
-  cloud.width = header.width;
-  cloud.height = header.height;
-  cloud.viewpoint = header.viewpoint;
-  // Compressed files have one field after the other, the others one point after the other.
-  const bool by_field = header.data == PcdData::COMPRESSED;
-  const std::size_t point_bytes = header.pointBytes();
-  std::size_t offset = 0;
-  for (const PcdField& field : header.fields) {
-    cloud.columns.push_back({field, offset, by_field ? field.bytes() : point_bytes});
-    offset += field.bytes() * (by_field ? cloud.points : 1);
-  }
-  return cloud;
 }
 
 std::string headerText(const PcdCloud& cloud, const std::vector<PcdColumn>& columns) {
@@ -94,11 +70,35 @@ void PcdCloud::remove(const std::string& name) {
                 columns.end());
 }
 
+PcdCloud cloudWithoutBytes(const PcdHeader& header) {
+  PcdCloud cloud;
+  cloud.points = header.points;
+  cloud.width = header.width;
+  cloud.height = header.height;
+  cloud.viewpoint = header.viewpoint;
+  // Compressed files have one field after the other, the others one point after the other.
+  const bool by_field = header.data == PcdData::COMPRESSED;
+  const std::size_t point_bytes = header.pointBytes();
+  std::size_t offset = 0;
+  for (const PcdField& field : header.fields) {
+    cloud.columns.push_back({field, offset, by_field ? field.bytes() : point_bytes});
+    offset += field.bytes() * (by_field ? cloud.points : 1);
+  }
+  return cloud;
+}
+
+std::vector<unsigned char> readCloudBytes(const std::filesystem::path& path, std::istream& stream, std::uint64_t size) {
+  std::vector<unsigned char> bytes(size);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!stream) throw Error(path.string(), "", "could not be read on");
+  return bytes;
+}
+
 PcdCloud cloudOfRows(const std::filesystem::path& path, const PcdHeader& header, std::istream& stream) {
   PcdCloud cloud = cloudWithoutBytes(header);
   try {
     cloud.bytes = header.data == PcdData::ASCII ? readPcdAscii(path, header, stream)
-                                                : readBytes(path, stream, cloud.points * header.pointBytes());
+                                                : readCloudBytes(path, stream, cloud.points * header.pointBytes());
   } catch (const std::bad_alloc&) {
     throw Error(path.string(), "", kTooLarge);
   }

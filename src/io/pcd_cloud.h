@@ -71,6 +71,11 @@ struct PcdCloud {
   }
 };
 
+/// The fields that a head announces and where their values will lie, before bytes are read.
+PcdCloud cloudWithoutBytes(const PcdHeader& header);
+/// Bytes from where a stream stands. Throws Error where there are fewer.
+std::vector<unsigned char> readCloudBytes(const std::filesystem::path& path, std::istream& stream, std::uint64_t size);
+
 /// Reads a PCD file. Throws Error that names the line or the offset.
 PcdCloud readPcdCloud(const std::filesystem::path& path);
 

@@ -39,15 +39,17 @@ PcdCloud readCloudFile(const std::filesystem::path& path) {
   return isPly(path) ? readPlyCloud(path) : readPcdCloud(path);
 }
 
-std::vector<LidarPoint> pointsOf(const std::filesystem::path& path, const PcdCloud& cloud) {
+std::vector<LidarPoint> pointsOf(const std::filesystem::path& path, const PcdCloud& cloud,
+                                 const std::array<double, 3>& origin_m) {
   std::vector<LidarPoint> points(cloud.points);
   const std::pair<const char*, float LidarPoint::*> coordinates[] = {
       {"x", &LidarPoint::x}, {"y", &LidarPoint::y}, {"z", &LidarPoint::z}};
+  auto origin = origin_m.begin();
   for (const auto& [name, member] : coordinates) {
     const PcdColumn* column = cloud.find({name});
     if (column == nullptr) throw Error(path.string(), "", std::string("has no field ") + name);
-    cloud.forEach(*column, [&, to = member](std::size_t point, double number) {
-      points[point].*to = static_cast<float>(number);
+    cloud.forEach(*column, [&, to = member, from = *origin++](std::size_t point, double number) {
+      points[point].*to = static_cast<float>(number - from);
     });
   }
   if (const PcdColumn* column = cloud.find(kIntensityNames)) {

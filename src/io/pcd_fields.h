@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -19,7 +20,9 @@ PcdCloud readCloudFile(const std::filesystem::path& path);
 
 /// x y z and the intensity, 0 where there is none, of a cloud's points. Throws Error, naming the file, where a
 /// coordinate is missing.
-std::vector<LidarPoint> pointsOf(const std::filesystem::path& path, const PcdCloud& cloud);
+/// @param origin_m  taken off x y z before they become float
+std::vector<LidarPoint> pointsOf(const std::filesystem::path& path, const PcdCloud& cloud,
+                                 const std::array<double, 3>& origin_m = {});
 
 /// All that readScanPoints() tells of a cloud. Throws Error as above.
 ScanPoints scanPointsOf(const std::filesystem::path& path, const PcdCloud& cloud);

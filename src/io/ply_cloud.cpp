@@ -9,8 +9,6 @@
 
 namespace saw_ndt::internal {
 
-namespace {
-
 void reverseBytes(PcdCloud& cloud) {
   for (const PcdColumn& column : cloud.columns) {
     unsigned char* at = cloud.bytes.data() + column.offset;
@@ -19,8 +17,6 @@ void reverseBytes(PcdCloud& cloud) {
     }
   }
 }
-
-}  // namespace
 
 PcdCloud readPlyCloud(const std::filesystem::path& path) {
   const PlyHeader header = readPlyHeader(path);

@@ -134,15 +134,33 @@ void WeightedMapBuilder::beginAdding(bool labelled, const std::string& software_
   }
 }
 
-void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
-                                 int threads) {
+void WeightedMapBuilder::requireAddable(const LabelView& labels, const Eigen::Isometry3d& T_map_scan) const {
   if (!T_map_scan.matrix().allFinite()) throw std::invalid_argument("T_map_scan is not finite");
   if (!labels.known() && origin_.segmentation) {
     throw std::invalid_argument("the segmentation of the scans has been given, but a scan has no labels");
   }
   requireKind(labels.known());
+}
+
+void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
+                                 int threads) {
+  requireAddable(labels, T_map_scan);
   beginAdding(labels.known(), SAW_NDT_VERSION);
-  const auto scan = static_cast<std::uint32_t>(++origin_.scan_count);
+  ++origin_.scan_count;
+  addPoints(points, labels, T_map_scan, threads);
+}
+
+void WeightedMapBuilder::continueScan(const ScanView& points, const LabelView& labels,
+                                      const Eigen::Isometry3d& T_map_scan, int threads) {
+  if (origin_.scan_count == 0) return addScan(points, labels, T_map_scan, threads);
+  requireAddable(labels, T_map_scan);
+  beginAdding(labels.known(), SAW_NDT_VERSION);
+  addPoints(points, labels, T_map_scan, threads);
+}
+
+void WeightedMapBuilder::addPoints(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
+                                   int threads) {
+  const auto scan = static_cast<std::uint32_t>(origin_.scan_count);
   const PointPlacement placement = placementOf(T_map_scan, origin_.resolution_m);
   const std::size_t most_parts = std::max<std::size_t>(1, points.size / kMinPointsPerThread);
   const int part_count =

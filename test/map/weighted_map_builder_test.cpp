@@ -49,6 +49,29 @@ WeightedMapBuilder builderOf(const std::vector<Scan>& scans) {
   return builder;
 }
 
+TEST(WeightedMapBuilder, AScanThatIsContinuedIsOneScan) {
+  const LabelledCloud cloud = mixedCloud(4, 1500);
+  LabelledCloud parts[3];
+  for (std::size_t i = 0; i < cloud.size(); ++i) parts[i % 3].push_back(cloud[i]);
+  WeightedMapBuilder whole(0.8), continued(0.8);
+  for (int scan = 0; scan < 2; ++scan) addCloud(whole, cloud, poseOf(scan));
+  addCloud(continued, cloud, poseOf(0));
+  for (int part = 0; part < 3; ++part) {
+    std::vector<StructuralLabel> labels;
+    for (const auto& point : parts[part]) labels.push_back(static_cast<StructuralLabel>(point.label));
+    const ScanView view = viewOf(parts[part]);
+    if (part == 0) {
+      continued.addScan(view, LabelView(labels), poseOf(1));
+    } else {
+      continued.continueScan(view, LabelView(labels), poseOf(1));
+    }
+  }
+  EXPECT_EQ(continued.origin().scan_count, 2U);
+  EXPECT_TRUE(savedBytes(continued.build()) == savedBytes(whole.build()));
+  expectThrows<std::invalid_argument>([&] { continued.continueScan(viewOf(cloud), {}, poseOf(1)); },
+                                      {"either labelled or unlabelled"});
+}
+
 TEST(WeightedMapBuilder, AnyOrderOfCloudsAndPointsGivesTheSameBytes) {
   std::vector<Scan> scans = drive();
   const std::string expected = savedBytes(builderOf(scans).build());

@@ -42,6 +42,11 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   /// has been given
   void addScan(const ScanView& scan, const LabelView& labels, const Eigen::Isometry3d& T_map_scan, int threads = 1);
 
+  /// Adds further points of the scan that was added last, such as the next block of a cloud too large for the memory:
+  /// the map is that of one scan with all of these points. Where none has been added, the same as addScan().
+  void continueScan(const ScanView& scan, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
+                    int threads = 1);
+
   /// Adds all that another builder has collected.
   /// @throws std::invalid_argument that names what differs, where resolution or segmentation are not the same
   void merge(const WeightedMapBuilder& other);
@@ -63,9 +68,11 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
  private:
   bool isEmpty() const;
   void requireKind(bool labelled) const;
+  void requireAddable(const LabelView& labels, const Eigen::Isometry3d& T_map_scan) const;
   void requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const;
   void beginAdding(bool labelled, const std::string& software_version);
   void merge(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries);
+  void addPoints(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan, int threads);
 
   MapOrigin origin_;
   std::unique_ptr<internal::VoxelSumsTable> table_;
