@@ -49,10 +49,9 @@ std::optional<internal::LiveAddress> parseUdp(const LocalizeArguments& arguments
 }  // namespace
 
 std::vector<ScanPoints> LiveScans::waitForFirst() {
-  constexpr std::size_t kScans = 5;
   std::vector<ScanPoints> points;
   RecordedScan scan;
-  while (first_.size() < kScans && source_.next(scan)) {
+  while (first_.size() < kFirstScans && source_.next(scan)) {
     if (scan.failure.empty()) points.push_back(scan);
     first_.push_back(std::move(scan));
     scan = RecordedScan();

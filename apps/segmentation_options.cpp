@@ -171,10 +171,9 @@ SegmentationOptions SegmentationArguments::learnedFrom(const std::vector<ScanPoi
 }
 
 std::vector<ScanPoints> firstScans(ScanSource& source) {
-  constexpr std::size_t kScans = 5;
   std::vector<ScanPoints> scans;
   RecordedScan scan;
-  for (std::size_t read = 0; read < kScans && source.next(scan); ++read) {
+  for (std::size_t read = 0; read < kFirstScans && source.next(scan); ++read) {
     if (scan.failure.empty()) scans.push_back(std::move(scan));
   }
   return scans;

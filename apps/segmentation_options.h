@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,7 +46,10 @@ class SegmentationArguments {
   SegmentationOptions values_;
 };
 
-/// The first scans of a source that can be read, a few of them.
+/// How many scans are learned from.
+constexpr std::size_t kFirstScans = 5;
+
+/// The first scans of a source that can be read, of kFirstScans.
 std::vector<ScanPoints> firstScans(ScanSource& source);
 
 }  // namespace saw_ndt

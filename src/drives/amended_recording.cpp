@@ -51,13 +51,12 @@ class RecordingWithPoses : public AmendedRecording {
 
  private:
   void readPoses() const {
-    constexpr double kLongestGap_s = 1.0;
     Trajectory trajectory = readTrajectory(file_);
     std::vector<StampedPose>& poses = trajectory.poses;
     if (trajectory.format != TrajectoryFormat::KITTI) {
       std::stable_sort(poses.begin(), poses.end(),
                        [](const StampedPose& a, const StampedPose& b) { return a.stamp_s < b.stamp_s; });
-      for (const double stamp_s : stamps()) T_map_lidar_.push_back(poseAt(poses, stamp_s, kLongestGap_s));
+      for (const double stamp_s : stamps()) T_map_lidar_.push_back(poseAt(poses, stamp_s, kLongestPoseGap_s));
       return;
     }
     if (poses.size() != static_cast<std::size_t>(scanCount())) {

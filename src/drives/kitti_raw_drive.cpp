@@ -1,10 +1,10 @@
 #include "drives/kitti_raw_drive.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 #include <vector>
 
+#include "drives/numbered_files.h"
 #include "io/bin_scan.h"
 #include "io/kitti_calibration.h"
 #include "io/kitti_oxts.h"
@@ -19,25 +19,6 @@ namespace saw_ndt::internal {
 namespace fs = std::filesystem;
 
 namespace {
-
-struct NumberedFile {
-  unsigned long long number = 0;
-  fs::path path;
-};
-
-std::vector<NumberedFile> numberedFiles(const fs::path& folder, const std::string& extension) {
-  std::vector<NumberedFile> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != extension) continue;
-    NumberedFile file{0, entry.path()};
-    const std::string stem = entry.path().stem().string();
-    const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), file.number);
-    if (error == std::errc() && end == stem.data() + stem.size()) files.push_back(file);
-  }
-  std::sort(files.begin(), files.end(),
-            [](const NumberedFile& a, const NumberedFile& b) { return a.number < b.number; });
-  return files;
-}
 
 /// Where the files lie that describe a drive.
 struct KittiFiles {

@@ -1,10 +1,9 @@
 #include "saw_ndt/drives/kitti_sequence.h"
 
-#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
+#include "drives/numbered_files.h"
 #include "io/bin_scan.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/kitti.h"
@@ -39,15 +38,10 @@ KittiSequence::KittiSequence(const fs::path& folder, const fs::path& poses_file,
     if (!fs::exists(needed)) throw Error(needed.string(), "", std::strerror(ENOENT));
     if (!fs::is_directory(needed)) throw Error(needed.string(), "", std::strerror(ENOTDIR));
   }
-  for (const fs::directory_entry& entry : fs::directory_iterator(velodyne)) {
-    if (entry.path().extension() != ".bin") continue;
-    Scan scan{0, entry.path().stem().string()};
-    const char* end = scan.stem.data() + scan.stem.size();
-    const auto [last, error] = std::from_chars(scan.stem.data(), end, scan.number);
-    if (error == std::errc() && last == end) scans_.push_back(scan);
+  for (const NumberedFile& file : numberedFiles(velodyne, ".bin")) {
+    scans_.push_back({file.number, file.path.stem().string()});
   }
   if (scans_.empty()) throw Error(velodyne.string(), "", "holds no numbered .bin file");
-  std::sort(scans_.begin(), scans_.end(), [](const Scan& a, const Scan& b) { return a.number < b.number; });
 
   const fs::path as_given = withoutTrailingSlash(fs::absolute(folder).lexically_normal());
   const fs::path as_is = fs::weakly_canonical(as_given);

@@ -20,7 +20,6 @@ using namespace internal;
 
 namespace {
 
-constexpr double kLongestGap_s = 1.0;
 constexpr double kSameTime_s = 0.05;
 
 // No odometry is better from scan to scan.
@@ -121,7 +120,7 @@ class OdometrySource : public PriorSource {
     const OdometryPose& a = *(after - 1);
     const OdometryPose& b = *after;
     const double interval_s = b.stamp_s - a.stamp_s;
-    if (interval_s > kLongestGap_s) return std::nullopt;
+    if (interval_s > kLongestPoseGap_s) return std::nullopt;
     const double share = (stamp_s - a.stamp_s) / interval_s;
     OdometryPose pose;
     pose.stamp_s = stamp_s;

@@ -12,9 +12,6 @@
 
 namespace saw_ndt::internal {
 
-/// How long a gap between two poses of a recording may be (s) for one between them to be told.
-constexpr double kLongestPoseGap_s = 1.0;
-
 /// Frames that hang on each other, as `tf` tells them: each has one parent, and where it is in that one may change.
 class SAW_NDT_EXPORT TransformTree {
  public:
