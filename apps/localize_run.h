@@ -24,12 +24,13 @@ class LocalizeRun {
   /// Localizes all scans of a source and writes the results.
   /// @param live  the source where it is a live one, else null
   /// @throws Error where no scan was located or, with -strict, one could not be read; results are written all the same
-  void localize(const NdtTarget& target, const LocalizerOptions& options, const MotionTrial& motion,
+  void localize(const TiledTarget& target, const LocalizerOptions& options, const MotionTrial& motion,
                 const std::optional<Eigen::Isometry3d>& T_map_base_initial, ScanSource& scans,
                 const Eigen::Isometry3d& T_camera_lidar, const LiveSource* live = nullptr);
 
  private:
   void tell(const RecordedScan& scan, const LocalizationResult& result, std::size_t left_out);
+  void tellTiles(const LocalizationSummary& summary) const;
   void tellScansWithoutTimes(const DriveLocalization& run, const MotionTrial& motion) const;
 
   const AppOptions& app_;
