@@ -7,11 +7,12 @@
 #include "localize_arguments.h"
 #include "output_folder.h"
 #include "progress_bar.h"
+#include "report/localization_summary.h"
 #include "report/pose_stream.h"
 #include "saw_ndt/drives/drive_localization.h"
 #include "saw_ndt/drives/live_source.h"
 #include "saw_ndt/drives/motion_trial.h"
-#include "saw_ndt/map/ndt_target.h"
+#include "saw_ndt/map/tiled_target.h"
 
 namespace saw_ndt {
 
