@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <set>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -17,6 +17,7 @@
 #include "map/level_plan.h"
 #include "map/localization_map_layout.h"
 #include "map/localization_tile.h"
+#include "map/map_file.h"
 #include "map/map_file_layout.h"
 #include "map/map_metadata.h"
 #include "map/sums_statistics.h"
@@ -226,19 +227,21 @@ class LocalizationMapWriter {
   std::uint64_t coarse_voxel_count_ = 0;
 };
 
-// The entries of a map around blocks of tiles, each in map order.
+// The entries of a map file around blocks of tiles. Of the file only the tiles that a block needs are in memory.
 class EntriesAroundBlocks {
  public:
-  EntriesAroundBlocks(const WeightedVoxelMap& map, double margin_m) : map_(map) {
-    for (std::size_t i = 0; i < map.entries().size(); ++i) {
-      const Eigen::Vector2d centre_m =
-          (map.entries()[i].voxel.head<2>().cast<double>().array() + 0.5) * map.resolution();
-      const auto blockAt = [&](double position_m) {
+  EntriesAroundBlocks(MapFileReader& reader, double margin_m) : reader_(reader) {
+    const double resolution_m = reader.origin().resolution_m;
+    for (std::uint64_t place = 0; place < reader.tileCount(); ++place) {
+      const Eigen::Vector2d least_m =
+          reader.front().tile(place).coordinate.head<2>().cast<double>() * kTileSize * resolution_m;
+      const auto blockAt = [](double position_m) {
         return static_cast<int>(std::floor(position_m / (kBlockTiles * kLocalizationTile_m)));
       };
-      for (int y = blockAt(centre_m.y() - margin_m); y <= blockAt(centre_m.y() + margin_m); ++y) {
-        for (int x = blockAt(centre_m.x() - margin_m); x <= blockAt(centre_m.x() + margin_m); ++x) {
-          numbers_of_block_[{x, y}].push_back(i);
+      const double end_m = kTileSize * resolution_m + margin_m;
+      for (int y = blockAt(least_m.y() - margin_m); y <= blockAt(least_m.y() + end_m); ++y) {
+        for (int x = blockAt(least_m.x() - margin_m); x <= blockAt(least_m.x() + end_m); ++x) {
+          tiles_of_block_[{x, y}].push_back(place);
         }
       }
     }
@@ -246,40 +249,54 @@ class EntriesAroundBlocks {
 
   std::vector<TileCoordinate> blocks() const {
     std::vector<TileCoordinate> blocks;
-    for (const auto& [block, numbers] : numbers_of_block_) blocks.push_back(block);
+    for (const auto& [block, tiles] : tiles_of_block_) blocks.push_back(block);
     return blocks;
   }
 
+  // In map order.
   std::vector<LabelledVoxelSums> around(const TileCoordinate& block) const {
-    std::vector<LabelledVoxelSums> entries;
-    for (const std::size_t number : numbers_of_block_.at(block)) entries.push_back(map_.entries()[number]);
+    std::vector<LabelledVoxelSums> entries, of_tile;
+    for (const std::uint64_t place : tiles_of_block_.at(block)) {
+      reader_.decodeTile(place, of_tile);
+      reader_.forget(reader_.front().tile(place));
+      entries.insert(entries.end(), of_tile.begin(), of_tile.end());
+    }
     return entries;
   }
 
  private:
-  const WeightedVoxelMap& map_;
-  std::map<TileCoordinate, std::vector<std::size_t>> numbers_of_block_;
+  MapFileReader& reader_;
+  std::map<TileCoordinate, std::vector<std::uint64_t>> tiles_of_block_;
 };
 
 }  // namespace
 
-void packMap(const WeightedVoxelMap& map, const std::string& localization_map_file, const VoxelWeighting& weighting,
-             int threads) {
+void packMap(const std::string& map_file, const std::string& localization_map_file, const VoxelWeighting& weighting,
+             int threads, const std::function<void(std::size_t done, std::size_t of)>& progress) {
   weighting.check();
-  checkOption(map.resolution() >= kLeastResolution_m, "resolution_m", map.resolution(), "0.001 or more to be packed");
-  const BlockPacker packer(map.origin(), weighting);
-  const EntriesAroundBlocks entries(map, packer.margin());
-  LocalizationMapWriter writer(localization_map_file, map.origin(), weighting);
+  MapFileReader reader(map_file);
+  const MapOrigin& origin = reader.origin();
+  if (origin.resolution_m < kLeastResolution_m) {
+    throw Error(map_file, "", "has voxels smaller than a millimetre, which a localization map has no room for");
+  }
+  const BlockPacker packer(origin, weighting);
+  const EntriesAroundBlocks entries(reader, packer.margin());
+  LocalizationMapWriter writer(localization_map_file, origin, weighting);
   const std::vector<TileCoordinate> blocks = entries.blocks();
   const auto at_once = static_cast<std::size_t>(threadCount(threads));
   for (std::size_t first = 0; first < blocks.size(); first += at_once) {
     std::vector<std::vector<PackedTile>> packed(std::min(at_once, blocks.size() - first));
-    forEachChunkOffline(threads, packed.size(), [&](std::size_t i, int) {
-      packed[i] = packer.pack(blocks[first + i], entries.around(blocks[first + i]));
-    });
+    try {
+      forEachChunkOffline(threads, packed.size(), [&](std::size_t i, int) {
+        packed[i] = packer.pack(blocks[first + i], entries.around(blocks[first + i]));
+      });
+    } catch (const std::length_error& error) {
+      throw Error(map_file, "", error.what());
+    }
     for (const std::vector<PackedTile>& of_block : packed) {
       for (const PackedTile& tile : of_block) writer.add(tile);
     }
+    if (progress) progress(first + packed.size(), blocks.size());
   }
   writer.finish();
 }

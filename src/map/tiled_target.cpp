@@ -58,10 +58,12 @@ const VoxelWeighting& TiledTarget::weighting() const { return whole_ ? whole_->w
 // A point looks at the voxels around its own.
 double TiledTarget::neededReach(double reach_m) const { return reach_m + kAlignmentWay_m + 2.0 * largest_voxel_m_; }
 
+double TiledTarget::loadedReach(double reach_m) const { return neededReach(std::max(options_.radius_m, reach_m)); }
+
 TiledTarget::Window TiledTarget::planAround(const Eigen::Vector2d& centre_m, double needed_m) const {
   Window plan;
   plan.centre_m = centre_m;
-  plan.radius_m = std::max(options_.radius_m, needed_m) + options_.hysteresis_m;
+  plan.radius_m = needed_m + options_.hysteresis_m;
   return plan;
 }
 
@@ -118,7 +120,7 @@ NdtTarget TiledTarget::at(const Eigen::Vector3d& position_m, double reach_m) {
     waits = ahead.window.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
     window = ahead.window.get();
   } else {
-    window = loaded(*map_, planAround(position, needed_m), options_.most_bytes, 0);
+    window = loaded(*map_, planAround(position, loadedReach(reach_m)), options_.most_bytes, 0);
   }
   if (waits && !is_first) {
     ++loads_.waits;
@@ -130,7 +132,7 @@ NdtTarget TiledTarget::at(const Eigen::Vector3d& position_m, double reach_m) {
 void TiledTarget::loadAhead(const Eigen::Vector3d& position_m, const Eigen::Vector3d& velocity_mps, double reach_m) {
   if (whole_) return;
   scan_reach_m_ = std::max(scan_reach_m_, reach_m);
-  const double needed_m = neededReach(scan_reach_m_);
+  const double needed_m = loadedReach(scan_reach_m_);
   const Eigen::Vector2d position = position_m.head<2>();
   Eigen::Vector2d way = options_.lookahead_s * velocity_mps.head<2>();
   if (!position.allFinite() || !way.allFinite()) return;

@@ -40,7 +40,9 @@ class StreamedMap : public ::testing::Test {
     ScansInMemory scans(driveSuburb(1, 200, 4));
     DriveMapOptions map_options;
     map_options.segmentation->max_range_m = kRange_m;
-    packMap(buildDriveMap(scans, map_options).build(), mapFile(), LocalizationMethod::named("weighted").voxels);
+    const std::string statistics_file = (folder->path() / "statistics.map").string();
+    buildDriveMap(scans, map_options).build().save(statistics_file);
+    packMap(statistics_file, mapFile(), LocalizationMethod::named("weighted").voxels);
     drive = new SyntheticDrive(driveSuburb(2, 180, 4));
   }
   static void TearDownTestSuite() {
