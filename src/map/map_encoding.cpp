@@ -101,6 +101,18 @@ MapSwitch encodeSwitch(const MapOrigin& origin, const std::vector<MapTileRecord>
   return {encodeHeader(origin, tiles, metadata, directory, front_offset), metadata + directory};
 }
 
+std::string asUpdatedHeader(const std::string& header, std::uint64_t end_offset) {
+  MapHeaderLayout layout;
+  std::memcpy(&layout, header.data(), sizeof layout);
+  layout.version = kUpdatedMapVersion;
+  layout.front_offset = sizeof layout;
+  layout.end_offset = end_offset;
+  layout.checksum = checksumOf(&layout, offsetof(MapHeaderLayout, checksum));
+  std::string bytes;
+  append(layout, bytes);
+  return bytes;
+}
+
 std::uint64_t bytesOfFront(const MapOrigin& origin, std::uint64_t tile_count) {
   return sizeof(MapHeaderLayout) + metadataText(origin).size() + tile_count * sizeof(MapTileLayout);
 }

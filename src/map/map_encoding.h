@@ -33,7 +33,11 @@ struct MapSwitch {
 /// @param front_offset  where the metadata are to stand
 MapSwitch encodeSwitch(const MapOrigin& origin, const std::vector<MapTileRecord>& tiles, std::uint64_t front_offset);
 
-/// How many bytes that is, where the entries of the first tile begin. Neither scan_count nor point_count matters.
+/// The header of a file of version 2 or 3 as that of a file that may be updated: the same map, which ends somewhere.
+std::string asUpdatedHeader(const std::string& header, std::uint64_t end_offset);
+
+/// How many bytes encodeFront() gives, where the entries of the first tile begin. Neither scan_count nor point_count
+/// matters.
 SAW_NDT_EXPORT std::uint64_t bytesOfFront(const MapOrigin& origin, std::uint64_t tile_count);
 
 }  // namespace saw_ndt::internal

@@ -54,6 +54,8 @@ bool decoded(const MapEntryLayout& layout, const Eigen::Vector3i& tile, Labelled
 
 MapFileReader::MapFileReader(const std::string& path) : path_(path), file_(openMapFile(path)), front_(path, file_) {}
 
+std::string MapFileReader::header() const { return {file_.data(), sizeof(MapHeaderLayout)}; }
+
 bool MapFileReader::readPiece(MapPiece& piece) {
   for (const MapPart& part : piece.parts) file_.forget(part.offset, part.entry_count * kEntryBytes);
   piece.parts.clear();

@@ -66,6 +66,9 @@ class SAW_NDT_EXPORT MapFileReader {
   std::uint64_t entryCount() const { return front_.entryCount(); }
   std::uint64_t tileCount() const { return front_.tileCount(); }
 
+  /// The bytes of the header.
+  std::string header() const;
+
   /// Finds the next piece; false behind the last one. All parts of the piece before it must have been decoded: their
   /// memory is given back.
   bool readPiece(MapPiece& piece);
