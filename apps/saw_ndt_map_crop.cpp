@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "app_options.h"
+#include "common/atomic_output.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/io/polygon_file.h"
 #include "saw_ndt/io/trajectory.h"
@@ -88,7 +89,9 @@ int main(int argc, char** argv) {
 
   return saw_ndt::runApp(argc, argv, app, [&] {
     const saw_ndt::MapRegion region = arguments.region(app);
-    const saw_ndt::WrittenMap cropped = saw_ndt::cropMapFile(map_file, region, cropped_file, app.threads());
+    // Found out before the long work: whether the map can be written. This leaves nothing behind.
+    { const saw_ndt::internal::AtomicOutput probe(cropped_file); }
+    const saw_ndt::CroppedMap cropped = saw_ndt::cropMapFile(map_file, region, cropped_file, app.threads());
     std::cout << cropped_file << ": " << cropped.voxel_count << " voxels of " << cropped.origin.resolution_m
               << " m with " << cropped.origin.point_count << " of " << cropped.point_count_before << " points\n";
   });

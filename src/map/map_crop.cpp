@@ -61,10 +61,11 @@ WeightedVoxelMap cropMap(const WeightedVoxelMap& map, const MapRegion& region) {
   return {origin, std::move(kept)};
 }
 
-WrittenMap cropMapFile(const std::string& path, const MapRegion& region, const std::string& out_path, int threads) {
+CroppedMap cropMapFile(const std::string& path, const MapRegion& region, const std::string& out_path, int threads) {
   MapFileReader reader(path);
-  WrittenMap written;
+  CroppedMap written;
   written.origin = reader.origin();
+  written.point_count_before = written.origin.point_count;
   written.origin.point_count = 0;
   const std::vector<RegionTile> tiles = tilesKept(reader, region, threads);
   if (tiles.empty()) throw Error(path, "", "none of its voxels lies there: nothing is left");
