@@ -174,11 +174,8 @@ std::vector<LocalizationTilePlace> LocalizationMapFile::tilesAround(const Eigen:
 
 void LocalizationMapFile::decode(const LocalizationTilePlace& tile, const LocalizationClip& clip,
                                  std::vector<NdtCells>& cells) const {
-  const char* const bytes = file_.data() + tile.offset;
-  if (checksumOf(bytes, tile.cell_bytes) != tile.cell_checksum) {
-    fail(tile.offset, "damaged: the checksum of a tile does not match");
-  }
-  if (!appendDecodedTile(bytes, tile.cell_bytes, tile.at, resolutions_m_, weighting_, clip, cells)) {
+  const std::string_view bytes = this->cells(tile);
+  if (!appendDecodedTile(bytes.data(), bytes.size(), tile.at, resolutions_m_, weighting_, clip, cells)) {
     fail(tile.offset, "damaged: a tile has voxels that cannot be");
   }
   file_.forget(tile.offset, tile.cell_bytes);
@@ -202,6 +199,14 @@ NdtTarget LocalizationMapFile::targetOf(const std::vector<LocalizationTilePlace>
     levels[level] = NdtLevel(resolutions_m_[level], std::move(cells));
   });
   return NdtTarget::ofLevels(origin_, weighting_, std::move(levels));
+}
+
+std::string_view LocalizationMapFile::cells(const LocalizationTilePlace& tile) const {
+  const std::string_view cells(file_.data() + tile.offset, tile.cell_bytes);
+  if (checksumOf(cells.data(), cells.size()) != tile.cell_checksum) {
+    fail(tile.offset, "damaged: the checksum of a tile does not match");
+  }
+  return cells;
 }
 
 std::string_view LocalizationMapFile::searchTable(const LocalizationTilePlace& tile) const {

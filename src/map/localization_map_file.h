@@ -49,6 +49,8 @@ class SAW_NDT_EXPORT LocalizationMapFile {
   /// The target of some tiles, in their order.
   NdtTarget targetOf(const std::vector<LocalizationTilePlace>& tiles, int threads,
                      const LocalizationClip& clip = {}) const;
+  /// The voxels of a tile as they stand in the file.
+  std::string_view cells(const LocalizationTilePlace& tile) const;
   /// The search table of a tile as it stands in the file; empty where there is none.
   std::string_view searchTable(const LocalizationTilePlace& tile) const;
 
