@@ -88,6 +88,10 @@ TiledTarget::Window TiledTarget::loaded(const LocalizationMap& map, Window plan,
   return plan;
 }
 
+bool TiledTarget::isReady(const Loading& loading) {
+  return loading.window.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
 void TiledTarget::begin(const Window& plan) {
   ahead_ = Loading{plan, std::async(std::launch::async, [map = *map_, plan, most_bytes = options_.most_bytes] {
                            return loaded(map, plan, most_bytes, 1);
@@ -117,7 +121,7 @@ NdtTarget TiledTarget::at(const Eigen::Vector3d& position_m, double reach_m) {
   Window window;
   if (ahead_ && ahead_->plan.covers(position, needed_m)) {
     const Loading ahead = *std::exchange(ahead_, std::nullopt);
-    waits = ahead.window.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+    waits = !isReady(ahead);
     window = ahead.window.get();
   } else {
     window_.reset();
@@ -141,11 +145,12 @@ void TiledTarget::loadAhead(const Eigen::Vector3d& position_m, const Eigen::Vect
   // No further, or tiles around a point ahead would have to be loaded again at once.
   way *= std::min(1.0, options_.hysteresis_m / std::max(way.norm(), 1e-9));
   const Eigen::Vector2d soon = position + way;
-  if (window_ && window_->covers(position, needed_m) && window_->covers(soon, needed_m)) return;
-  if (ahead_) {
-    const bool is_ready = ahead_->window.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    if (!is_ready || ahead_->plan.covers(soon, needed_m)) return;
+  if (ahead_ && isReady(*ahead_)) {
+    // Changed over as soon as it serves: a vehicle that turns needs others next.
+    const Loading ahead = *std::exchange(ahead_, std::nullopt);
+    if (ahead.plan.covers(position, needed_m)) take(ahead.window.get());
   }
+  if (ahead_ || (window_ && window_->covers(position, needed_m) && window_->covers(soon, needed_m))) return;
   // As far ahead as still covers the position: it lasts longest.
   begin(planAround(soon, needed_m));
 }

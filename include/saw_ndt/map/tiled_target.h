@@ -90,6 +90,7 @@ class SAW_NDT_EXPORT TiledTarget {
   };
 
   static Window loaded(const LocalizationMap& map, Window plan, std::size_t most_bytes, int threads);
+  static bool isReady(const Loading& loading);
   double neededReach(double reach_m) const;
   Window planAround(const Eigen::Vector2d& centre_m, double needed_m) const;
   void begin(const Window& plan);
