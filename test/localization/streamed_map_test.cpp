@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "localization/scans_in_memory.h"
@@ -93,6 +94,27 @@ TEST_F(StreamedMap, GivesTheSameBitsAsTheWholeMap) {
   EXPECT_GE(streamed.tileLoads()->loads, 3U);
   EXPECT_EQ(streamed.tileLoads()->least_radius_m, 0.0);
   EXPECT_EQ(whole.tileLoads()->loads, 1U);
+}
+
+// Each has tiles of its own, and all the same file.
+TEST_F(StreamedMap, ServesLocalizersSideBySide) {
+  const LocalizationMap map(mapFile());
+  std::vector<std::vector<LocalizationResult>> results(3);
+  std::vector<std::thread> threads;
+  for (std::vector<LocalizationResult>& of_thread : results) {
+    threads.emplace_back([&of_thread, map] {
+      LocalizerOptions with = options();
+      with.alignment.threads = 1;
+      Localizer localizer(TiledTarget(map, with.tiles), with);
+      localizer.setInitialPose(drive->T_map_lidar.front());
+      of_thread = follow(localizer);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t i = 0; i < drive->scans.size(); ++i) {
+    EXPECT_EQ(results[1][i].T_map_base.matrix(), results[0][i].T_map_base.matrix());
+    EXPECT_EQ(results[2][i].T_map_base.matrix(), results[0][i].T_map_base.matrix());
+  }
 }
 
 TEST_F(StreamedMap, IsSearchedWhereTheStartIsUnknown) {
