@@ -5,44 +5,25 @@
 #include <vector>
 
 #include "localization/scans_in_memory.h"
-#include "localization/synthetic_drive.h"
+#include "localization/simulated_scans.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/localization/map_pack.h"
-#include "simulation/lidar_simulator.h"
-#include "simulation/short_drive.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {
-
-/// Every `step`-th scan of a simulated drive through a suburb.
-SyntheticDrive driveSuburb(int number, int scans, int step) {
-  DriveOptions options;
-  options.drive = number;
-  const SimulatedDrive simulated = shortDrive("residential", options, scans);
-  LidarOptions lidar;
-  lidar.seed = static_cast<std::uint64_t>(number);
-  LidarSimulator simulator(simulated.scene, lidar);
-  SyntheticDrive drive;
-  for (int scan = 0; scan < scans; scan += step) {
-    drive.stamps_s.push_back(simulated.motion->stamps_s[static_cast<std::size_t>(scan)]);
-    drive.T_map_lidar.push_back(simulated.motion->T_scene_lidar[static_cast<std::size_t>(scan)]);
-    drive.scans.push_back(simulator.scan(*simulated.motion, scan).points);
-  }
-  return drive;
-}
 
 /// A map of some hundred metres of road and another drive along it.
 class StreamedMap : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder = new TemporaryFolder();
-    ScansInMemory scans(driveSuburb(1, 200, 4));
+    ScansInMemory scans(simulatedScans("residential", 1, 0, 200, 4));
     const std::string statistics_file = (folder->path() / "statistics.map").string();
     buildDriveMap(scans, {}).build().save(statistics_file);
     packMap(statistics_file, mapFile(), LocalizationMethod::named("weighted").voxels);
-    drive = new SyntheticDrive(driveSuburb(2, 180, 4));
+    drive = new SyntheticDrive(simulatedScans("residential", 2, 0, 180, 4));
   }
   static void TearDownTestSuite() {
     delete drive;
