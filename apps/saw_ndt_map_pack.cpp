@@ -1,7 +1,9 @@
 #include <iostream>
+#include <optional>
 
 #include "app_options.h"
 #include "common/atomic_output.h"
+#include "progress_bar.h"
 #include "saw_ndt/localization/localization_method.h"
 #include "saw_ndt/localization/map_pack.h"
 
@@ -26,8 +28,14 @@ int main(int argc, char** argv) {
   return saw_ndt::runApp(argc, argv, app, [&] {
     // Found out before the long work: whether the map can be written. This leaves nothing behind.
     { const saw_ndt::internal::AtomicOutput probe(packed_file); }
-    saw_ndt::packMap(saw_ndt::WeightedVoxelMap::load(map_file), packed_file,
-                     saw_ndt::LocalizationMethod::named(method).voxels, app.threads());
+    std::optional<saw_ndt::ProgressBar> progress;
+    std::size_t shown = 0;
+    saw_ndt::packMap(map_file, packed_file, saw_ndt::LocalizationMethod::named(method).voxels, app.threads(),
+                     [&](std::size_t done, std::size_t of) {
+                       if (!progress) progress.emplace(of);
+                       for (; shown < done; ++shown) progress->step();
+                     });
+    progress.reset();
     const saw_ndt::LocalizationMap packed(packed_file);
     const std::uint64_t voxel_count = packed.voxelCount() + packed.coarseVoxelCount();
     std::cout << packed_file << ": " << packed.voxelCount() << " voxels and " << packed.coarseVoxelCount()

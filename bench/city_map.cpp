@@ -1,11 +1,6 @@
 // Writes maps of cities, which repeat a drive's map, and measures what is done with a part of them: whether that takes
 // time or memory that grows with the city.
 
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,9 +10,9 @@
 #include <map>
 
 #include "app_options.h"
-#include "common/stopwatch.h"
 #include "map/map_file.h"
 #include "map/map_file_writer.h"
+#include "process_cost.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/map/map_crop.h"
 #include "saw_ndt/map/map_merge.h"
@@ -85,42 +80,7 @@ class City {
   std::map<int, std::map<int, std::vector<MapTileRecord>>> rows_;
 };
 
-// Puts what is in memory of a file out of it.
-void leavePageCache(const std::string& path) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) throw saw_ndt::Error(path, "", "cannot be opened");
-  fdatasync(descriptor);
-  posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED);
-  close(descriptor);
-}
-
-struct Cost {
-  double seconds = 0.0;
-  double peak_mb = 0.0;
-};
-
-// Runs something in a process of its own.
-Cost costOf(const std::function<void()>& work) {
-  saw_ndt::internal::Stopwatch stopwatch;
-  const pid_t child = fork();
-  if (child < 0) throw saw_ndt::Error("fork() failed");
-  if (child == 0) {
-    try {
-      work();
-    } catch (const std::exception& error) {
-      std::cerr << error.what() << '\n';
-      _exit(1);
-    }
-    _exit(0);
-  }
-  int status = 0;
-  rusage usage{};
-  wait4(child, &status, 0, &usage);
-  if (status != 0) throw saw_ndt::Error("a measurement failed");
-  return {1e-3 * stopwatch.milliseconds(), static_cast<double>(usage.ru_maxrss) / 1024.0};
-}
-
-void printRow(double km, const std::string& what, const Cost& cost) {
+void printRow(double km, const std::string& what, const saw_ndt::ProcessCost& cost) {
   std::cout << "| " << km << " | " << what << " | " << std::fixed << std::setprecision(3) << cost.seconds << " | "
             << std::setprecision(0) << cost.peak_mb << " |\n"
             << std::defaultfloat << std::setprecision(6) << std::flush;
@@ -145,15 +105,15 @@ void measure(const CityArguments& arguments, double km, int threads) {
     tile_count = copies * drive.tileCount();
     const City city(drive, copies);
     middle_m = city.middle();
-    printRow(km, "write", costOf([&] { city.write(city_file); }));
+    printRow(km, "write", saw_ndt::costOf([&] { city.write(city_file); }));
   }
   std::cerr << km << " km: " << fs::file_size(city_file) << " bytes, " << tile_count << " tiles\n";
   const Eigen::Vector3d half_m(0.5 * arguments.square_m, 0.5 * arguments.square_m, 1e4);
   const saw_ndt::MapRegion square = saw_ndt::boxRegion(middle_m - half_m, middle_m + half_m);
   const auto printColdAndWarm = [&](const std::string& what, const std::function<void()>& work) {
-    leavePageCache(city_file);
-    printRow(km, what + ", file not in memory", costOf(work));
-    printRow(km, what, costOf(work));
+    saw_ndt::leavePageCache(city_file);
+    printRow(km, what + ", file not in memory", saw_ndt::costOf(work));
+    printRow(km, what, saw_ndt::costOf(work));
   };
   printColdAndWarm("open", [&] { const MapFileReader reader(city_file); });
   printColdAndWarm("read the square", [&] { saw_ndt::WeightedVoxelMap::load(city_file, square, threads); });
@@ -164,8 +124,9 @@ void measure(const CityArguments& arguments, double km, int threads) {
                    [&] { saw_ndt::updateMapFile(city_file, {arguments.drive_file}, threads); });
   std::cerr << km << " km: " << saw_ndt::deadBytesOfMapFile(city_file) << " dead bytes after four updates\n";
   if (arguments.merges) {
-    leavePageCache(city_file);
-    printRow(km, "merge into a new file", costOf([&] { saw_ndt::mergeMapFiles({city_file}, part_file, threads); }));
+    saw_ndt::leavePageCache(city_file);
+    printRow(km, "merge into a new file",
+             saw_ndt::costOf([&] { saw_ndt::mergeMapFiles({city_file}, part_file, threads); }));
   }
   fs::remove(city_file);
   fs::remove(part_file);

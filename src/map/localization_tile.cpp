@@ -97,7 +97,7 @@ std::string encodedTile(const LocalizationTile& tile) {
 
 bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate& at,
                        const std::vector<double>& resolutions_m, const VoxelWeighting& weighting,
-                       std::vector<NdtCells>& cells) {
+                       const LocalizationClip& clip, std::vector<NdtCells>& cells) {
   const std::size_t level_count = resolutions_m.size();
   if (size < level_count * sizeof(LevelHead)) return false;
   std::vector<LevelHead> heads(level_count);
@@ -122,6 +122,9 @@ bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate
       std::memcpy(&cell, next, sizeof cell);
       reorder(cell);
       if (!isValid(cell) || cell.place[0] >= x_count || cell.place[1] >= y_count) return false;
+      const Eigen::Vector2d middle_m((x + cell.place[0] + 0.5) * resolution_m,
+                                     (y + cell.place[1] + 0.5) * resolution_m);
+      if ((middle_m - clip.centre_m).squaredNorm() > clip.radius_m * clip.radius_m) continue;
       of_level.voxels.emplace_back(x + cell.place[0], y + cell.place[1], head.least_z + cell.place[2]);
       of_level.packed.push_back(dequantized(cell, resolution_m, weighting));
     }

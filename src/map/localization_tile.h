@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,12 @@ TileCoordinate localizationTileOf(const VoxelCoordinate& voxel, double resolutio
 /// The tile that holds a position (m). @pre less than 1e9 m away
 TileCoordinate localizationTileAt(double x_m, double y_m);
 
+/// Voxels are left out whose middle is farther than that from a place, horizontally (m).
+struct LocalizationClip {
+  Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
+  double radius_m = std::numeric_limits<double>::infinity();
+};
+
 /// The voxels of one level in a tile.
 struct TileLevel {
   std::vector<std::int32_t> z;       ///< of each voxel
@@ -58,6 +65,6 @@ std::string encodedTile(const LocalizationTile& tile);
 /// @return false where the bytes are no such tile; nothing is to be used then
 bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate& at,
                        const std::vector<double>& resolutions_m, const VoxelWeighting& weighting,
-                       std::vector<NdtCells>& cells);
+                       const LocalizationClip& clip, std::vector<NdtCells>& cells);
 
 }  // namespace saw_ndt::internal

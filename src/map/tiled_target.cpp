@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/stopwatch.h"
@@ -17,7 +18,10 @@ using namespace internal;
 namespace {
 
 // So far from where it begins an alignment may look at voxels (m).
-constexpr double kAlignmentWay_m = 20.0;
+constexpr double kAlignmentWay_m = 10.0;
+
+// The middle of a voxel that a point looks at lies within so many edges of it.
+constexpr double kVoxelsLookedAt = 2.5;
 
 // What a voxel takes: its cell and its share of the index.
 constexpr std::size_t kBytesPerVoxel = sizeof(PackedNdtCell) + 32;
@@ -55,13 +59,17 @@ TiledTarget TiledTarget::open(const std::string& path, const VoxelWeighting& wei
 const MapOrigin& TiledTarget::origin() const { return whole_ ? whole_->origin() : map_->origin(); }
 const VoxelWeighting& TiledTarget::weighting() const { return whole_ ? whole_->weighting() : map_->weighting(); }
 
+double TiledTarget::reach() const { return whole_ ? std::numeric_limits<double>::infinity() : options_.radius_m; }
+
 // A point looks at the voxels around its own.
-double TiledTarget::neededReach(double reach_m) const { return reach_m + kAlignmentWay_m + 2.0 * largest_voxel_m_; }
+double TiledTarget::neededReach(double reach_m) const {
+  return std::max(options_.radius_m, reach_m) + kAlignmentWay_m + kVoxelsLookedAt * largest_voxel_m_;
+}
 
 TiledTarget::Window TiledTarget::planAround(const Eigen::Vector2d& centre_m, double needed_m) const {
   Window plan;
   plan.centre_m = centre_m;
-  plan.radius_m = std::max(options_.radius_m, needed_m) + options_.hysteresis_m;
+  plan.radius_m = needed_m + options_.hysteresis_m;
   return plan;
 }
 
@@ -75,7 +83,7 @@ TiledTarget::Window TiledTarget::loaded(const LocalizationMap& map, Window plan,
     for (const LocalizationTilePlace& tile : tiles) voxel_count += tile.voxel_count;
     if (tiles.size() <= 1 || voxel_count <= most_bytes / kBytesPerVoxel) break;
   }
-  plan.target = file.targetOf(tiles, threads);
+  plan.target = file.targetOf(tiles, threads, LocalizationClip{plan.centre_m, plan.loaded_radius_m});
   plan.load_ms = stopwatch.milliseconds();
   return plan;
 }
@@ -127,16 +135,14 @@ NdtTarget TiledTarget::at(const Eigen::Vector3d& position_m, double reach_m) {
   return take(std::move(window));
 }
 
-void TiledTarget::loadAhead(const Eigen::Vector3d& position_m, const Eigen::Vector3d& velocity_mps, double reach_m) {
+void TiledTarget::loadAhead(const Eigen::Vector3d& position_m, const Eigen::Vector3d& velocity_mps) {
   if (whole_) return;
-  scan_reach_m_ = std::max(scan_reach_m_, reach_m);
-  const double needed_m = neededReach(scan_reach_m_);
+  const double needed_m = neededReach(options_.radius_m);
   const Eigen::Vector2d position = position_m.head<2>();
   Eigen::Vector2d way = options_.lookahead_s * velocity_mps.head<2>();
   if (!position.allFinite() || !way.allFinite()) return;
-  // No further than tiles around a point ahead reach, or they would be loaded again and again.
-  constexpr double kLongestWay_hysteresis = 1.5;
-  way *= std::min(1.0, kLongestWay_hysteresis * options_.hysteresis_m / std::max(way.norm(), 1e-9));
+  // No further, or tiles around a point ahead would have to be loaded again at once.
+  way *= std::min(1.0, options_.hysteresis_m / std::max(way.norm(), 1e-9));
   const Eigen::Vector2d soon = position + way;
   const auto isCovered = [&](const Window& window) {
     return window.covers(position, needed_m) && window.covers(soon, needed_m);
@@ -147,7 +153,7 @@ void TiledTarget::loadAhead(const Eigen::Vector3d& position_m, const Eigen::Vect
     if (!is_ready || ahead_->plan.covers(soon, needed_m)) return;
   }
   // As far ahead as still covers the position: it lasts longest.
-  begin(planAround(position + std::min(1.0, options_.hysteresis_m / std::max(way.norm(), 1e-9)) * way, needed_m));
+  begin(planAround(soon, needed_m));
 }
 
 }  // namespace saw_ndt

@@ -10,11 +10,14 @@
 #include "expect_throws.h"
 #include "localization/place_index.h"
 #include "localization/place_table.h"
+#include "localization/synthetic_drive.h"
 #include "map/localization_map_file.h"
 #include "map/map_fixtures.h"
 #include "map/voxel_index.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/localization/global_search.h"
 #include "saw_ndt/localization/localization_method.h"
+#include "saw_ndt/localization/scan_preparation.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
@@ -60,8 +63,13 @@ class MapPack : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return (folder.path() / name).string(); }
   LocalizationMap packed(const WeightedVoxelMap& map, const std::string& method = "weighted") const {
-    packMap(map, path(method), weightingOf(method));
+    pack(map, path(method), weightingOf(method));
     return LocalizationMap(path(method));
+  }
+  void pack(const WeightedVoxelMap& map, const std::string& file, const VoxelWeighting& weighting,
+            int threads = 0) const {
+    map.save(path("statistics"));
+    packMap(path("statistics"), file, weighting, threads);
   }
   TemporaryFolder folder;
 };
@@ -102,10 +110,10 @@ TEST_F(MapPack, HasTheVoxelsOfTheTargetOnEveryLevel) {
   }
 }
 
-TEST_F(MapPack, TakesAtMostFortyBytesAVoxelAndIsTheSameForAnyThreads) {
+TEST_F(MapPack, IsTheSameForAnyThreads) {
   const WeightedVoxelMap map = scatteredMap(40000);
-  packMap(map, path("one"), weightingOf("weighted"), 1);
-  packMap(map, path("four"), weightingOf("weighted"), 4);
+  pack(map, path("one"), weightingOf("weighted"), 1);
+  pack(map, path("four"), weightingOf("weighted"), 4);
   EXPECT_EQ(contentOf(path("one")), contentOf(path("four")));
 }
 
@@ -156,6 +164,62 @@ TEST_F(MapPack, HasTheSearchTablesOfTheWholeMap) {
   EXPECT_EQ(found, index.tiles().size());
 }
 
+Eigen::Isometry3d streetPose(double x, double y, double yaw_deg) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << x, y, 1.73;
+  T.linear() = rotationFromVector({0.0, 0.0, radiansFromDegrees(yaw_deg)});
+  return T;
+}
+
+/// Streets here and there, of which one in two has lost a house.
+WeightedVoxelMap streetsMap() {
+  WeightedMapBuilder builder(0.5);
+  ScanSegmenter segmenter{SegmentationOptions()};
+  unsigned seed = 0;
+  for (int street = 0; street < 4; ++street) {
+    std::vector<Block> blocks = streetBlocks();
+    if (street % 2 != 0) blocks.erase(blocks.begin());
+    for (const double x : {-20.0, 0.0, 20.0}) {
+      const std::vector<LidarPoint> scan =
+          scanBlocks(blocks, SensorModel::named("HDL-64E"), streetPose(x, 1.0, 0.0), ++seed);
+      std::vector<StructuralLabel> labels;
+      segmenter.segment(viewOf(scan), labels);
+      Eigen::Isometry3d T = streetPose(x, 1.0, 0.0);
+      T.translation() += Eigen::Vector3d(700.0, -450.0, 3.0) * street;
+      builder.addScan(viewOf(scan), labels, T);
+    }
+  }
+  return builder.build();
+}
+
+TEST_F(MapPack, IsSearchedAsItsWholeTarget) {
+  const LocalizationMap map = packed(streetsMap());
+  const GlobalSearch by_tables(map), by_target(map.target());
+  ScanPreparationOptions options;
+  options.segment = true;
+  ScanPreparation preparation(options);
+  unsigned seed = 100;
+  for (const Eigen::Isometry3d& pose : {streetPose(-12.0, 2.0, 75.0), streetPose(5.0, -1.0, 200.0)}) {
+    const SourcePoints& source =
+        preparation.prepare(viewOf(scanBlocks(streetBlocks(), SensorModel::named("HDL-64E"), pose, ++seed)));
+    SearchRegion second_street;
+    second_street.T_map_base.translation() << 1400.0, -900.0, 0.0;
+    second_street.radius_m = 60.0;
+    for (const std::optional<SearchRegion>& region : {std::optional<SearchRegion>(), std::optional(second_street)}) {
+      const std::vector<PoseCandidate> found = by_tables.candidates(source, region);
+      const std::vector<PoseCandidate> expected = by_target.candidates(source, region);
+      ASSERT_FALSE(expected.empty());
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].matched_share, expected[i].matched_share);
+        EXPECT_EQ(found[i].T_map_base.linear(), expected[i].T_map_base.linear());
+        // Heights are stored to a centimetre.
+        EXPECT_LT((found[i].T_map_base.translation() - expected[i].T_map_base.translation()).norm(), 0.0051);
+      }
+    }
+  }
+}
+
 TEST_F(MapPack, OfNothingHasNothing) {
   const LocalizationMap map = packed(WeightedMapBuilder(0.5).build());
   EXPECT_EQ(map.tileCount(), 0U);
@@ -175,7 +239,7 @@ void useAll(const std::string& file) {
 }
 
 TEST_F(MapPack, DamageAnywhereIsAnErrorThatNamesTheFile) {
-  packMap(mapOf(mixedCloud(1, 2000)), path("good"), weightingOf("weighted-s50"));
+  pack(mapOf(mixedCloud(1, 2000)), path("good"), weightingOf("weighted-s50"));
   const std::string good = contentOf(path("good"));
   useAll(path("good"));
   std::mt19937 random(7);
@@ -199,13 +263,13 @@ TEST_F(MapPack, DamageAnywhereIsAnErrorThatNamesTheFile) {
 
 TEST_F(MapPack, ForAnotherWeightingIsRefused) {
   const WeightedVoxelMap map = scatteredMap(1000);
-  packMap(map, path("paper"), weightingOf("weighted-s50"));
+  pack(map, path("paper"), weightingOf("weighted-s50"));
   expectThrows<Error>([&] { NdtTarget::load(path("paper"), weightingOf("weighted")); }, {path("paper"), "packed"});
   VoxelWeighting bad;
   bad.min_points_per_voxel = 0;
-  expectThrows<std::invalid_argument>([&] { packMap(map, path("bad"), bad); }, {"min_points_per_voxel"});
+  expectThrows<std::invalid_argument>([&] { pack(map, path("bad"), bad); }, {"min_points_per_voxel"});
   WeightedMapBuilder fine(0.0005);
-  expectThrows<std::invalid_argument>([&] { packMap(fine.build(), path("bad"), {}); }, {"resolution_m"});
+  expectThrows<Error>([&] { pack(fine.build(), path("bad"), {}); }, {path("statistics"), "millimetre"});
   EXPECT_FALSE(std::filesystem::exists(path("bad")));
 }
 

@@ -40,7 +40,9 @@ class StreamedMap : public ::testing::Test {
     ScansInMemory scans(driveSuburb(1, 200, 4));
     DriveMapOptions map_options;
     map_options.segmentation->max_range_m = kRange_m;
-    packMap(buildDriveMap(scans, map_options).build(), mapFile(), LocalizationMethod::named("weighted").voxels);
+    const std::string statistics_file = (folder->path() / "statistics.map").string();
+    buildDriveMap(scans, map_options).build().save(statistics_file);
+    packMap(statistics_file, mapFile(), LocalizationMethod::named("weighted").voxels);
     drive = new SyntheticDrive(driveSuburb(2, 180, 4));
   }
   static void TearDownTestSuite() {
@@ -55,7 +57,7 @@ class StreamedMap : public ::testing::Test {
   static LocalizerOptions options() {
     LocalizerOptions options;
     options.segmentation.max_range_m = kRange_m;
-    options.tiles.radius_m = 20.0;
+    options.tiles.radius_m = kRange_m + 1.0;
     options.tiles.hysteresis_m = 10.0;
     return options;
   }
@@ -115,6 +117,33 @@ TEST_F(StreamedMap, HasFewerTilesWhereMemoryIsBound) {
   EXPECT_GT(streamed.tileLoads()->least_radius_m, 0.0);
   EXPECT_LT(streamed.tileLoads()->least_radius_m, kRange_m);
   EXPECT_TRUE(result.T_map_base.matrix().allFinite());
+}
+
+// Points that lie farther away than tiles reach would meet voxels or not, by which set of tiles is there.
+TEST_F(StreamedMap, TakesPointsAsFarAsTilesReach) {
+  ScanPreparationOptions all, near;
+  near.max_reach_m = 15.0;
+  for (ScanPreparationOptions* with : {&all, &near}) {
+    with->motion_compensation = MotionCompensation::FROM_AZIMUTH_CLOCKWISE;
+  }
+  ScanPreparation prepare_all(all), prepare_near(near);
+  const SourcePoints& expected = prepare_all.prepare(viewOf(drive->scans.front()));
+  const SourcePoints& found = prepare_near.prepare(viewOf(drive->scans.front()));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (std::hypot(expected.x[i], expected.y[i]) > 15.0F) continue;
+    ASSERT_LT(next, found.size());
+    ASSERT_EQ(found.x[next], expected.x[i]);
+    ASSERT_EQ(found.z[next], expected.z[i]);
+    ASSERT_EQ(found.label[next], expected.label[i]);
+    ASSERT_EQ(prepare_near.times_s()[next], prepare_all.times_s()[i]);
+    ++next;
+  }
+  EXPECT_EQ(found.size(), next);
+  EXPECT_GT(next, 1000U);
+  EXPECT_LT(next, expected.size());
+  near.max_reach_m = 0.0;
+  EXPECT_THROW(near.check(), std::invalid_argument);
 }
 
 TEST_F(StreamedMap, OptionsThatDoNotHoldAreNamed) {
