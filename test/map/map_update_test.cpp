@@ -17,6 +17,7 @@
 #include "expect_throws.h"
 #include "map/map_file.h"
 #include "map/map_file_layout.h"
+#include "map_file_bytes.h"
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/map/map_merge.h"
@@ -279,6 +280,18 @@ TEST_F(MapUpdateInPlace, RefusesAHeaderThatPointsAnywhere) {
   expectRefused([&](MapHeaderLayout& header) { header.end_offset = 0; }, "outside the map");
   expectRefused([&](MapHeaderLayout& header) { header.entry_count = ~std::uint64_t{0}; }, "do not make this size");
   expectRefused([&](MapHeaderLayout& header) { header.tile_count = ~std::uint64_t{0} / 40 + 2; }, "do not make this");
+}
+
+TEST_F(MapUpdateInPlace, OfOlderVersionsIsDoneFromVersion2On) {
+  const std::string bytes = bytesOf(town()), a = saved("a.map", drive(1));
+  const std::string first = folder.write("1.map", asVersion1(bytes)).string();
+  mergeMapFiles({first}, path("2.map"));
+  expectThrows<Error>([&] { updateMapFile(first, {path("2.map")}); }, {"1.map: map version 1", "merge it"});
+  EXPECT_TRUE(contentOf(first) == asVersion1(bytes));
+  const std::string second = folder.write("2.map", asVersion2(bytes)).string();
+  const std::string expected = bytesOf(mergeMapFiles({second, a}));
+  updateMapFile(second, {a});
+  EXPECT_TRUE(bytesOf(WeightedVoxelMap::load(second)) == expected);
 }
 
 TEST_F(MapUpdateInPlace, AMapThatDoesNotMergeLeavesEveryByte) {
