@@ -15,8 +15,10 @@ namespace {
 constexpr char kDescription[] =
     "Tells what has changed between two maps of one place, in one map frame: which voxels of A have vanished, which of "
     "B have appeared, and which flat ones have moved along their normal, by a voxel at most. Something may have "
-    "vanished or appeared only where the other map has looked: it has points in the voxel or below it, something as "
-    "high within 8 m, and so many points around that the voxel would be there; other voxels are not covered. Labels "
+    "vanished or appeared only where the other map has looked: it has points in the voxel or up to 2 m below it "
+    "(further "
+    "below, where something within 8 m is as high), and so many around that the voxel would be there; other voxels "
+    "are not covered. Labels "
     "take no part. Voxels of one change that touch each other are a group; the largest are listed, -json has them all. "
     "Gaps are the distances of flat voxels that both maps have, along their normals: far from 0 where a map lies "
     "askew. docs/maps.md has the rules.";
@@ -52,7 +54,9 @@ int main(int argc, char** argv) {
   app.addPositional("B", &second_file, "map file, the later one");
   app.addOption("least-points", &options.least_points, "POINTS", "of a voxel that is compared; 3 or more");
   app.addOption("least-scans", &options.least_scans, "SCANS",
-                "that met such a voxel, so that traffic counts less; not asked of maps of fewer scans");
+                "that met such a voxel, at least; not asked of maps of fewer scans");
+  app.addOption("least-share", &options.least_share_of_scans, "SHARE",
+                "of the scans that met the most often met voxel around, at least, so that traffic counts less; 0 to 1");
   app.addOption("least-displacement", &options.least_displacement_m, "METRES", "of a surface that has moved");
   app.addOption("least-voxels", &options.least_voxels, "VOXELS", "of a group; smaller ones are left out");
   app.addFlag("json", &as_json, "print one JSON object");

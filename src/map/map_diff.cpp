@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "common/executor.h"
@@ -27,14 +29,15 @@ struct Side {
   Side(const WeightedVoxelMap& map, const MapDiffOptions& options, int threads)
       : surfaces(map, threads), seen(surfaces), least_points(static_cast<std::uint64_t>(options.least_points)) {
     const auto scans = static_cast<std::uint64_t>(options.least_scans);
-    least_scans = map.origin().scan_count < scans ? 0 : static_cast<std::uint32_t>(scans);
-    same.assign(surfaces.all().size(), 0);
-    found.resize(surfaces.all().size());
-  }
-
-  // Whether there is enough of a surface to say that it has changed.
-  bool isCompared(const Surface& surface) const {
-    return surface.point_count >= least_points && (surface.scan_count == 0 || surface.scan_count >= least_scans);
+    const std::uint64_t least_scans = map.origin().scan_count < scans ? 0 : scans;
+    for (const Surface& surface : surfaces.all()) {
+      const bool stays = surface.scan_count == 0 ||
+                         (surface.scan_count >= least_scans &&
+                          surface.scan_count >= options.least_share_of_scans * seen.mostScansAround(surface.voxel));
+      compared.push_back(static_cast<char>(stays && surface.point_count >= least_points));
+    }
+    same.assign(compared.size(), 0);
+    found.resize(compared.size());
   }
 
   struct Found {
@@ -45,8 +48,8 @@ struct Side {
   MapSurfaces surfaces;
   SeenPlaces seen;
   std::uint64_t least_points;
-  std::uint32_t least_scans;
-  std::vector<char> same;  // whether the other map has the surface, too
+  std::vector<char> compared;  // whether there is enough of a surface to say that it has changed
+  std::vector<char> same;      // whether the other map has it, too
   std::vector<Found> found;
 };
 
@@ -63,18 +66,17 @@ class Comparison {
     });
   }
 
-  // What has become of a surface that is not the same.
+  // What has become of a surface that is compared and not the same.
   Side::Found fate(const Surface& surface, VoxelIndex::Cursor& cursor) const {
     Side::Found fate;
-    if (!here_.isCompared(surface)) return fate;
     const auto most_m = static_cast<float>(here_.surfaces.resolution());
-    float least_gap_m = 2.0F * most_m;
+    float least_sigma_m = std::numeric_limits<float>::infinity();
     there_.surfaces.anyAround(surface.voxel, cursor, [&](std::size_t number) {
-      const Surface& other = there_.surfaces.all()[number];
-      if (there_.same[number] != 0 || !there_.isCompared(other)) return false;
-      const SurfacePair pair = pairOf(surface, other, here_.surfaces.resolution());
-      if (!pair.both_flat || std::abs(pair.gap_m) > most_m || !(std::abs(pair.gap_m) < least_gap_m)) return false;
-      least_gap_m = std::abs(pair.gap_m);
+      if (there_.same[number] != 0 || there_.compared[number] == 0) return false;
+      const SurfacePair pair = pairOf(surface, there_.surfaces.all()[number], here_.surfaces.resolution());
+      if (!pair.both_flat || std::abs(pair.gap_m) > most_m || !(pair.gap_sigma_m < least_sigma_m)) return false;
+      // The best known gap; the least one would be too small.
+      least_sigma_m = pair.gap_sigma_m;
       fate.moved = true;
       fate.displacement_m = pair.gap_m * pair.normal;
       return false;
@@ -128,7 +130,7 @@ MapDiffSide sumUp(const WeightedVoxelMap& map, const Side& side, bool is_second,
     before = &entry.voxel;
   }
   for (std::size_t i = 0; i < side.found.size(); ++i) {
-    if (!side.isCompared(side.surfaces.all()[i])) continue;
+    if (side.compared[i] == 0) continue;
     ++sum.compared;
     if (side.found[i].not_covered) ++sum.not_covered;
   }
@@ -143,12 +145,12 @@ MapDiffSide sumUp(const WeightedVoxelMap& map, const Side& side, bool is_second,
 void measureGaps(const Side& first, const Side& second, MapDiff& diff) {
   std::vector<float> gaps_m;
   VoxelIndex::Cursor cursor;
-  for (const Surface& surface : first.surfaces.all()) {
-    if (!first.isCompared(surface)) continue;
+  for (std::size_t i = 0; i < first.compared.size(); ++i) {
+    if (first.compared[i] == 0) continue;
+    const Surface& surface = first.surfaces.all()[i];
     second.surfaces.anyAround(surface.voxel, cursor, [&](std::size_t number) {
       const Surface& other = second.surfaces.all()[number];
-      if (other.voxel != surface.voxel) return true;
-      if (!second.isCompared(other)) return true;
+      if (other.voxel != surface.voxel || second.compared[number] == 0) return true;
       const SurfacePair pair = pairOf(surface, other, diff.resolution_m);
       if (pair.both_flat) gaps_m.push_back(pair.gap_m);
       return true;
@@ -172,6 +174,8 @@ std::string toString(VoxelChange change) {
 void MapDiffOptions::check() const {
   checkOption(least_points >= kLeastPointsOfSurface, "least_points", least_points, "3 or more");
   checkOption(least_scans >= 0, "least_scans", least_scans, "0 or more");
+  checkOption(least_share_of_scans >= 0.0 && least_share_of_scans <= 1.0, "least_share_of_scans", least_share_of_scans,
+              "between 0 and 1");
   checkOption(least_displacement_m > 0.0 && std::isfinite(least_displacement_m), "least_displacement_m",
               least_displacement_m, "positive");
   checkOption(least_voxels >= 1, "least_voxels", least_voxels, "1 or more");
@@ -195,10 +199,10 @@ MapDiff diffMaps(const WeightedVoxelMap& first_map, const WeightedVoxelMap& seco
     second.same[i] = static_cast<char>(backwards.isSame(surface, cursor));
   });
   forEachSurface(first, threads, [&](std::size_t i, const Surface& surface, VoxelIndex::Cursor& cursor) {
-    if (first.same[i] == 0) first.found[i] = forwards.fate(surface, cursor);
+    if (first.same[i] == 0 && first.compared[i] != 0) first.found[i] = forwards.fate(surface, cursor);
   });
   forEachSurface(second, threads, [&](std::size_t i, const Surface& surface, VoxelIndex::Cursor& cursor) {
-    if (second.same[i] == 0) second.found[i] = backwards.fate(surface, cursor);
+    if (second.same[i] == 0 && second.compared[i] != 0) second.found[i] = backwards.fate(surface, cursor);
   });
 
   std::vector<ChangedVoxel> changes;

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kGroupsInText = 20, kGroupsCircled = 100;
-constexpr double kLeastRadius_px = 9.0;
+constexpr double kSmallReach_px = 12.0, kCircleMargin_px = 6.0;
 
 Json toJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -38,6 +38,7 @@ Json figuresOf(const MapDiff& diff) {
   return {{"resolution_m", diff.resolution_m},
           {"least_points", diff.options.least_points},
           {"least_scans", diff.options.least_scans},
+          {"least_share_of_scans", diff.options.least_share_of_scans},
           {"least_displacement_m", diff.options.least_displacement_m},
           {"least_voxels", diff.options.least_voxels},
           {"first", toJson(diff.first, VoxelChange::VANISHED)},
@@ -127,16 +128,18 @@ GnuplotPicture mapDiffPicture(const MapDiff& diff, const WeightedVoxelMap& first
     std::vector<std::vector<double>> circles(3);
     std::size_t groups = 0;
     for (const ChangedGroup& group : diff.groups) {
-      if (group.change != kind.change || ++groups > kGroupsCircled) continue;
+      if (group.change != kind.change) continue;
+      ++groups;
       const Eigen::Vector3d centre = 0.5 * (group.least_m + group.greatest_m);
-      const double reach = (group.greatest_m - centre).head<2>().norm();
+      const double reach_m = (group.greatest_m - centre).head<2>().norm();
+      if (reach_m * axes.scale_px() > kSmallReach_px || circles.front().size() == kGroupsCircled) continue;
       circles[0].push_back(centre.x());
       circles[1].push_back(centre.y());
-      circles[2].push_back(1.15 * reach + kLeastRadius_px / axes.scale_px());
+      circles[2].push_back(reach_m + kCircleMargin_px / axes.scale_px());
     }
     keys = ", keyentry with points pt 5 ps 1.3 " + colour + " title '" + name + " (" + std::to_string(groups) + ")'" +
            keys;
-    if (groups == 0) continue;
+    if (circles.front().empty()) continue;
     picture.data += gnuplotData("$" + name, circles);
     plots += ", $" + name + " with circles fillstyle empty border lw 1.3 " + colour + " notitle";
   }
@@ -145,7 +148,7 @@ GnuplotPicture mapDiffPicture(const MapDiff& diff, const WeightedVoxelMap& first
        << ", keyentry with points pt 5 ps 1.3 lc rgb '" << kGrey << "' title 'in either map'\n";
   picture.commands = draw.str();
   axes.begin(picture, "what has changed, and the voxels of both maps, from above");
-  picture.caption = "Changed voxels on those of both maps; circles are around groups of them.";
+  picture.caption = "Changed voxels on those of both maps; circles are around small groups of them.";
   return picture;
 }
 

@@ -31,8 +31,8 @@ struct EIGEN_ALIGN16 ChangedPoint {
 /// The changed voxels in the order of MapDiff::changes. Coordinates are single precision, as those of voxelCloud().
 pcl::PointCloud<ChangedPoint> changedCloud(const MapDiff& diff);
 
-/// The changed voxels from above, on all voxels of both maps in grey; the largest groups are circled, so that they are
-/// found in large maps.
+/// The changed voxels from above, on all voxels of both maps in grey; groups that are small in the picture are circled,
+/// the largest hundred of a kind.
 GnuplotPicture mapDiffPicture(const MapDiff& diff, const WeightedVoxelMap& first, const WeightedVoxelMap& second);
 
 }  // namespace saw_ndt

@@ -25,6 +25,7 @@ SAW_NDT_EXPORT std::string toString(VoxelChange change);
 struct SAW_NDT_EXPORT MapDiffOptions {
   int least_points = 10;              ///< of a voxel that is compared; 3 or more
   int least_scans = 3;                ///< that met such a voxel; not asked of a map of fewer scans
+  double least_share_of_scans = 0.2;  ///< that met such a voxel, of those that met one in the columns around; 0 to 1
   double least_displacement_m = 0.1;  ///< along the normal, of a surface that has moved; positive
   int least_voxels = 4;               ///< of changes of one kind that touch each other; fewer are no change; 1 or more
 
