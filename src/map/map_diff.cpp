@@ -58,12 +58,19 @@ class Comparison {
   Comparison(const Side& here, const Side& there, const MapDiffOptions& options)
       : here_(here), there_(there), least_m_(static_cast<float>(options.least_displacement_m)) {}
 
+  // Whether the other map has the surface, too: something whose points may be those of one thing with it, a parallel
+  // surface nearer than what counts, or one that is no further away than can be told.
   bool isSame(const Surface& surface, VoxelIndex::Cursor& cursor) const {
+    float least_sigma_m = std::numeric_limits<float>::infinity(), its_gap_m = least_sigma_m;
     return there_.surfaces.anyAround(surface.voxel, cursor, [&](std::size_t number) {
       const SurfacePair pair = pairOf(surface, there_.surfaces.all()[number], here_.surfaces.resolution());
-      return pair.both_flat ? std::abs(pair.gap_m) < std::max(least_m_, kSignificance * pair.gap_sigma_m)
-                            : pair.mahalanobis2 <= kSameThing;
-    });
+      if (!pair.both_flat) return pair.mahalanobis2 <= kSameThing;
+      if (pair.gap_sigma_m < least_sigma_m) {
+        least_sigma_m = pair.gap_sigma_m;
+        its_gap_m = std::abs(pair.gap_m);
+      }
+      return std::abs(pair.gap_m) < least_m_;
+    }) || its_gap_m < kSignificance * least_sigma_m;
   }
 
   // What has become of a surface that is compared and not the same.

@@ -20,7 +20,7 @@ struct NamedColour {
   const char* name;
   const char* colour;
 };
-constexpr NamedColour kLabels[] = {{"noise", "#c44e52"}, {"ground", "#d8c48f"}, {"not ground", "#35608d"}};
+constexpr NamedColour kLabels[] = {{"noise", "#b07aa1"}, {"ground", "#d8c48f"}, {"not ground", "#35608d"}};
 constexpr NamedColour kClasses[] = {{"linear", "#e69f00"}, {"planar", "#4c92c3"}, {"volumetric", "#2f8f5b"}};
 
 double valueOf(const OverviewVoxel& voxel, OverviewColour colour) {
