@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kGroupsInText = 20, kGroupsCircled = 100;
-constexpr double kSmallReach_px = 12.0, kCircleMargin_px = 6.0;
+constexpr double kSmallReach_px = 8.0, kCircleMargin_px = 6.0;
 
 Json toJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 

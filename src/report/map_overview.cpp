@@ -57,7 +57,7 @@ void drawScale(const std::vector<OverviewVoxel>& voxels, OverviewColour colour, 
   draw << "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\nset cbrange [" << low
        << ':' << std::max(high, low + 1e-6)
        << "]\nset colorbox user origin graph 1.03,graph 0 size 0.02,graph 1\nset format cb '%.4g'\nset cblabel '"
-       << (colour == OverviewColour::WEIGHT ? "weight" : "z of the topmost voxel (m)") << "'\n";
+       << (colour == OverviewColour::WEIGHT ? "weight" : "z of the topmost voxel (m)") << "' offset 1.5,0\n";
 }
 
 }  // namespace

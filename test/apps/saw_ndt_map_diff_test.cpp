@@ -29,7 +29,10 @@ class MapDiffApp : public DriveFiles {
       pcl::PointCloud<pcl::PointXYZL> cloud;
       const auto add = [&](double x, double y, double z, std::uint32_t label) {
         pcl::PointXYZL point;
-        point.getVector3fMap() = Eigen::Vector3d(x_m + x, y, z + 0.002 * ((cloud.size() + scan) % 5)).cast<float>();
+        point.getVector3fMap() =
+            Eigen::Vector3d(x_m + x, y,
+                            z + 0.002 * static_cast<double>((cloud.size() + static_cast<std::size_t>(scan)) % 5))
+                .cast<float>();
         point.label = label;
         cloud.push_back(point);
       };
