@@ -113,9 +113,9 @@ TEST_F(MapDiffApp, WritesTheChangedVoxels) {
 TEST_F(MapDiffApp, DrawsThem) {
   if (!gnuplotFound()) GTEST_SKIP() << "gnuplot is not installed";
   const AppResult result =
-      runAppProgram(SAW_NDT_APP, path("floor.map") + path("box.map") + "-picture " + path("it's.png"));
+      runAppProgram(SAW_NDT_APP, path("floor.map") + path("box.map") + "-picture " + path("the changes.png"));
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_EQ(contentOf(folder.path() / "it's.png").substr(1, 3), "PNG");
+  EXPECT_EQ(contentOf(folder.path() / "the changes.png").substr(1, 3), "PNG");
   // Nothing else is left: drive, two maps, picture.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 4);
 }
@@ -149,8 +149,8 @@ TEST_F(MapDiffApp, HalvesOfARealDriveDifferByNextToNothing) {
       diffMaps(buildDriveMap(*sequence.scans(even), {}).build(), buildDriveMap(*sequence.scans(odd), {}).build());
   for (const MapDiffSide& side : {diff.first, diff.second}) {
     EXPECT_GT(side.compared, 10000U);
-    EXPECT_LT(static_cast<double>(side.changed + side.moved), 0.003 * static_cast<double>(side.compared));
-    EXPECT_LT(static_cast<double>(side.not_covered), 0.03 * static_cast<double>(side.compared));
+    EXPECT_LT(static_cast<double>(side.changed + side.moved), 0.0005 * static_cast<double>(side.compared));
+    EXPECT_LT(static_cast<double>(side.not_covered), 0.002 * static_cast<double>(side.compared));
   }
 }
 
