@@ -10,6 +10,7 @@
 #include "report/voxel_cloud.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/io/point_cloud_file.h"
+#include "saw_ndt/map/map_update.h"
 
 namespace {
 
@@ -61,6 +62,7 @@ int main(int argc, char** argv) {
     if (!picture_file.empty()) drawOverview(map, map_file, colour, picture_file);
     saw_ndt::MapSummary summary = saw_ndt::summarize(map);
     summary.file_bytes = std::filesystem::file_size(map_file);
+    summary.dead_bytes = saw_ndt::deadBytesOfMapFile(map_file);
     std::cout << (as_json ? saw_ndt::toJsonText(summary) : saw_ndt::toText(summary));
   });
 }
