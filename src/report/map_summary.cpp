@@ -1,11 +1,13 @@
 #include "report/map_summary.h"
 
 #include <algorithm>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <type_traits>
+#include <utility>
 
+#include "common/middle_value.h"
+#include "map/map_tile.h"
+#include "report/figure_lines.h"
 #include "saw_ndt/map/ndt_target.h"
 #include "segmentation/segmentation_fields.h"
 
@@ -30,6 +32,35 @@ VoxelFigure figureOf(const std::vector<VoxelStatistics>& voxels, Value value) {
   return figure;
 }
 
+// How many columns of voxels hold points.
+std::size_t columnCount(const std::vector<LabelledVoxelSums>& entries) {
+  std::vector<std::pair<int, int>> columns;
+  for (const LabelledVoxelSums& entry : entries) {
+    const std::pair column(entry.voxel.x(), entry.voxel.y());
+    if (columns.empty() || columns.back() != column) columns.push_back(column);
+  }
+  std::sort(columns.begin(), columns.end());
+  return static_cast<std::size_t>(std::unique(columns.begin(), columns.end()) - columns.begin());
+}
+
+// Of entries in map order, one or more.
+void measureTiles(const std::vector<LabelledVoxelSums>& entries, MapSummary& summary) {
+  std::vector<std::size_t> sizes;
+  Eigen::Vector3i before = tileOf(entries.front().voxel);
+  sizes.push_back(0);
+  for (const LabelledVoxelSums& entry : entries) {
+    const Eigen::Vector3i tile = tileOf(entry.voxel);
+    if (tile != before) sizes.push_back(0);
+    before = tile;
+    ++sizes.back();
+  }
+  summary.tiles = sizes.size();
+  const auto [least, greatest] = std::minmax_element(sizes.begin(), sizes.end());
+  summary.tile_entries.min = *least;
+  summary.tile_entries.max = *greatest;
+  summary.tile_entries.median = middleValue(sizes);
+}
+
 void measureEntries(const WeightedVoxelMap& map, MapSummary& summary) {
   if (map.entries().empty()) return;
   VoxelCoordinate lowest = map.entries().front().voxel, highest = lowest;
@@ -38,11 +69,17 @@ void measureEntries(const WeightedVoxelMap& map, MapSummary& summary) {
     highest = highest.cwiseMax(entry.voxel);
     summary.label_points[static_cast<std::size_t>(entry.label)] += entry.sums.count;
   }
+  measureTiles(map.entries(), summary);
+  summary.area_m2 = static_cast<double>(columnCount(map.entries())) * map.resolution() * map.resolution();
   summary.box_min_m = lowest.cast<double>() * map.resolution();
   summary.box_max_m = (highest.cast<double>().array() + 1.0).matrix() * map.resolution();
 }
 
 Json toJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json toJson(const TileEntries& entries) {
+  return {{"min", entries.min}, {"median", entries.median}, {"max", entries.max}};
+}
 
 Json toJson(const VoxelFigure& figure) { return {{"mean", figure.mean}, {"min", figure.min}, {"max", figure.max}}; }
 
@@ -61,6 +98,13 @@ Json withShares(const std::array<const char*, 3>& names, const std::array<Count,
 }
 
 constexpr char kNotKnown[] = "not known";
+
+Json bytesOf(std::uint64_t file_bytes, const MapSummary& summary) {
+  const auto each = [file_bytes](std::size_t count) {
+    return count == 0 ? 0.0 : static_cast<double>(file_bytes) / static_cast<double>(count);
+  };
+  return {{"file", file_bytes}, {"per_entry", each(summary.entries)}, {"per_voxel", each(summary.voxels)}};
+}
 
 // {"sensor.name": ..., "sensor.columns": ..., ...}
 Json toJson(const SegmentationOptions& options) {
@@ -86,7 +130,12 @@ Json toJson(const MapSummary& summary) {
             {"voxels", summary.voxels},
             {"coarse_voxels", summary.coarse_voxels},
             {"box_min_m", toJson(summary.box_min_m)},
-            {"box_max_m", toJson(summary.box_max_m)}};
+            {"box_max_m", toJson(summary.box_max_m)},
+            {"extent_m", toJson(Eigen::Vector3d(summary.box_max_m - summary.box_min_m))},
+            {"area_m2", summary.area_m2},
+            {"tiles", summary.tiles},
+            {"tile_entries", toJson(summary.tile_entries)}};
+  if (summary.file_bytes) json["bytes"] = bytesOf(*summary.file_bytes, summary);
   if (!summary.map_origin_m.isZero(0.0)) json["map_origin_m"] = toJson(summary.map_origin_m);
   if (summary.dead_bytes != 0) json["dead_bytes"] = summary.dead_bytes;
   if (summary.labelled) json["label_points"] = withShares({"noise", "ground", "non_ground"}, summary.label_points);
@@ -95,10 +144,6 @@ Json toJson(const MapSummary& summary) {
   json["mean_confidence"] = toJson(summary.mean_confidence);
   json["weight"] = toJson(summary.weight);
   return json;
-}
-
-void writeLine(std::ostringstream& text, const std::string& name, const Json& value) {
-  text << std::left << std::setw(29) << name << ' ' << value.dump() << '\n';
 }
 
 }  // namespace
@@ -126,18 +171,7 @@ MapSummary summarize(const WeightedVoxelMap& map, const VoxelWeighting& weightin
   return summary;
 }
 
-std::string toText(const MapSummary& summary) {
-  std::ostringstream text;
-  const Json json = toJson(summary);
-  for (const auto& [name, value] : json.items()) {
-    if (!value.is_object()) {
-      writeLine(text, name, value);
-      continue;
-    }
-    for (const auto& [part, part_value] : value.items()) writeLine(text, name + "." + part, part_value);
-  }
-  return text.str();
-}
+std::string toText(const MapSummary& summary) { return figureLines(toJson(summary)); }
 
 std::string toJsonText(const MapSummary& summary) { return toJson(summary).dump(2) + "\n"; }
 
