@@ -5,6 +5,7 @@
 
 #include "app_options.h"
 #include "picture_file.h"
+#include "report/localization_map_summary.h"
 #include "report/map_overview.h"
 #include "report/map_summary.h"
 #include "report/voxel_cloud.h"
@@ -17,7 +18,8 @@ namespace {
 constexpr char kDescription[] =
     "Tells what a map file holds: where it lies, its extent and the area that it covers, how many voxels, points and "
     "labels, how its tiles and bytes are spent, how it was made, and how its voxels are shaped and weighted by the "
-    "default confidences. Voxels are those that have a distribution, of 6 points or more.";
+    "default confidences. Voxels are those that have a distribution, of 6 points or more. Of a localization map of "
+    "saw_ndt_map_pack it tells levels, tiles and bytes, and the methods that it serves.";
 
 void drawOverview(const saw_ndt::WeightedVoxelMap& map, const std::string& map_file, const std::string& colour_name,
                   const std::string& picture_file) {
@@ -53,6 +55,15 @@ int main(int argc, char** argv) {
   return saw_ndt::runApp(argc, argv, app, [&] {
     if (picture_file.empty() && app.isGiven("colour")) throw saw_ndt::UsageError("-colour goes with -picture");
     saw_ndt::requireDrawable(picture_file);
+    if (saw_ndt::LocalizationMap::isOne(map_file)) {
+      if (!pcd_file.empty() || !picture_file.empty()) {
+        throw saw_ndt::Error(map_file, "",
+                             "is a localization map: -pcd and -picture show the statistics map it was packed from");
+      }
+      const auto packed = saw_ndt::summarize(saw_ndt::LocalizationMap(map_file));
+      std::cout << (as_json ? saw_ndt::toJsonText(packed) : saw_ndt::toText(packed));
+      return;
+    }
     const saw_ndt::WeightedVoxelMap map = saw_ndt::WeightedVoxelMap::load(map_file);
     if (!pcd_file.empty()) {
       pcl::PCLPointCloud2 voxels;

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <type_traits>
 #include <utility>
 
 #include "common/middle_value.h"
 #include "map/map_tile.h"
 #include "report/figure_lines.h"
+#include "report/map_figures.h"
 #include "saw_ndt/map/ndt_target.h"
-#include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
 
@@ -75,29 +74,7 @@ void measureEntries(const WeightedVoxelMap& map, MapSummary& summary) {
   summary.box_max_m = (highest.cast<double>().array() + 1.0).matrix() * map.resolution();
 }
 
-Json toJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-Json toJson(const TileEntries& entries) {
-  return {{"min", entries.min}, {"median", entries.median}, {"max", entries.max}};
-}
-
 Json toJson(const VoxelFigure& figure) { return {{"mean", figure.mean}, {"min", figure.min}, {"max", figure.max}}; }
-
-// {"<name>": count, ..., "<name>_share": ...}
-template <typename Count>
-Json withShares(const std::array<const char*, 3>& names, const std::array<Count, 3>& counts) {
-  Json counted, shares;
-  double total = 0.0;
-  for (const Count count : counts) total += static_cast<double>(count);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    counted[names[i]] = counts[i];
-    shares[std::string(names[i]) + "_share"] = total > 0.0 ? static_cast<double>(counts[i]) / total : 0.0;
-  }
-  counted.update(shares);
-  return counted;
-}
-
-constexpr char kNotKnown[] = "not known";
 
 Json bytesOf(std::uint64_t file_bytes, const MapSummary& summary) {
   const auto each = [file_bytes](std::size_t count) {
@@ -106,41 +83,28 @@ Json bytesOf(std::uint64_t file_bytes, const MapSummary& summary) {
   return {{"file", file_bytes}, {"per_entry", each(summary.entries)}, {"per_voxel", each(summary.voxels)}};
 }
 
-// {"sensor.name": ..., "sensor.columns": ..., ...}
-Json toJson(const SegmentationOptions& options) {
-  Json json;
-  internal::forEachField(options, [&json](const char* name, const auto& value) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, GroundRule>) {
-      json[name] = toString(value);
-    } else {
-      json[name] = value;
-    }
-  });
-  return json;
-}
-
 Json toJson(const MapSummary& summary) {
   Json json{{"resolution_m", summary.resolution_m},
             {"coarse_resolution_m", summary.coarse_resolution_m},
             {"labelled", summary.labelled},
-            {"software_version", summary.software_version.empty() ? kNotKnown : summary.software_version},
+            {"software_version", orNotKnown(summary.software_version)},
             {"scans", summary.scans},
             {"points", summary.points},
             {"entries", summary.entries},
             {"voxels", summary.voxels},
             {"coarse_voxels", summary.coarse_voxels},
-            {"box_min_m", toJson(summary.box_min_m)},
-            {"box_max_m", toJson(summary.box_max_m)},
-            {"extent_m", toJson(Eigen::Vector3d(summary.box_max_m - summary.box_min_m))},
+            {"box_min_m", vectorFigures(summary.box_min_m)},
+            {"box_max_m", vectorFigures(summary.box_max_m)},
+            {"extent_m", vectorFigures(summary.box_max_m - summary.box_min_m)},
             {"area_m2", summary.area_m2},
             {"tiles", summary.tiles},
             {"tile_entries", toJson(summary.tile_entries)}};
   if (summary.file_bytes) json["bytes"] = bytesOf(*summary.file_bytes, summary);
-  if (!summary.map_origin_m.isZero(0.0)) json["map_origin_m"] = toJson(summary.map_origin_m);
+  if (!summary.map_origin_m.isZero(0.0)) json["map_origin_m"] = vectorFigures(summary.map_origin_m);
   if (summary.dead_bytes != 0) json["dead_bytes"] = summary.dead_bytes;
   if (summary.labelled) json["label_points"] = withShares({"noise", "ground", "non_ground"}, summary.label_points);
-  json["class_voxels"] = withShares({"linear", "planar", "volumetric"}, summary.class_voxels);
-  if (summary.labelled) json["segmentation"] = summary.segmentation ? toJson(*summary.segmentation) : Json(kNotKnown);
+  json["class_voxels"] = classFigures(summary.class_voxels);
+  if (summary.labelled) json["segmentation"] = segmentationFigures(summary.segmentation);
   json["mean_confidence"] = toJson(summary.mean_confidence);
   json["weight"] = toJson(summary.weight);
   return json;
