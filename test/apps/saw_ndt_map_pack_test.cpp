@@ -56,7 +56,7 @@ TEST_F(MapPackApp, IsToldBySawNdtMapInfo) {
   const LocalizationMap map((folder.path() / "packed.map").string());
   const auto told = nlohmann::json::parse(run(SAW_NDT_MAP_INFO_APP, path("packed.map") + "-json").output);
   EXPECT_EQ(told["kind"], "localization map");
-  EXPECT_EQ(told["methods"], nlohmann::json({"weighted-s50", "weighted-s100"}));
+  EXPECT_EQ(told["methods"], nlohmann::json({"weighted-s50", "weighted-s100", "unweighted-s50"}));
   EXPECT_EQ(told["resolutions_m"], nlohmann::json({1.0}));
   EXPECT_EQ(told["coarse_resolution_m"], 3.0);
   EXPECT_EQ(told["voxels"], map.voxelCount());
