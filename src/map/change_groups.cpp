@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "map/map_tile.h"
 #include "map/voxel_index.h"
@@ -128,10 +129,7 @@ GroupedChanges groupChanges(const std::vector<ChangedVoxel>& changes, int least_
     }
   }
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    if (group_of[i] == kNone) {
-      grouped.dropped.push_back(changes[i]);
-      continue;
-    }
+    if (group_of[i] == kNone) continue;
     grouped.changes.push_back(changes[i]);
     grouped.changes.back().group = group_of[i];
     groups[group_of[i]].told.displacement_m += changes[i].displacement_m;

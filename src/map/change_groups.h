@@ -6,13 +6,14 @@
 
 namespace saw_ndt::internal {
 
-/// Puts changed voxels of one kind that touch each other into groups, the largest first, and sets each voxel's group.
-/// Voxels of groups smaller than `least_voxels` (in places, those of both maps together) are taken out and returned;
-/// the order of the others stays.
+/// Changed voxels in groups.
 struct GroupedChanges {
-  std::vector<ChangedVoxel> changes, dropped;
-  std::vector<ChangedGroup> groups;
+  std::vector<ChangedVoxel> changes;  ///< those of groups that are large enough, in the order given
+  std::vector<ChangedGroup> groups;   ///< of them, the largest first
 };
+
+/// Puts changed voxels of one kind that touch each other into groups and sets each voxel's group. Groups of fewer than
+/// `least_voxels` places, those of both maps together, are left out.
 GroupedChanges groupChanges(const std::vector<ChangedVoxel>& changes, int least_voxels, double resolution_m);
 
 }  // namespace saw_ndt::internal

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
 
 #include "common/executor.h"
 #include "map/change_groups.h"
+#include "map/map_metadata.h"
 #include "map/map_surfaces.h"
 #include "map/seen_places.h"
 #include "saw_ndt/common/error.h"
+#include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
 
@@ -172,6 +172,13 @@ void measureGaps(const Side& first, const Side& second, MapDiff& diff) {
                             gaps_m[last - tail]};
 }
 
+void requireComparable(const MapOrigin& first, const MapOrigin& second) {
+  checkOption(first.resolution_m == second.resolution_m, "resolution_m", fieldText(second.resolution_m),
+              ("that of the other map, " + fieldText(first.resolution_m)).c_str());
+  checkOption(first.map_origin_m == second.map_origin_m, "map_origin_m", positionText(second.map_origin_m),
+              ("that of the other map, " + positionText(first.map_origin_m)).c_str());
+}
+
 }  // namespace
 
 std::string toString(VoxelChange change) {
@@ -191,12 +198,7 @@ void MapDiffOptions::check() const {
 MapDiff diffMaps(const WeightedVoxelMap& first_map, const WeightedVoxelMap& second_map, const MapDiffOptions& options,
                  int threads) {
   options.check();
-  if (first_map.resolution() != second_map.resolution()) {
-    std::ostringstream reason;
-    reason << "resolution_m: " << first_map.resolution() << " and " << second_map.resolution()
-           << ": maps of voxels of one size are compared";
-    throw std::invalid_argument(reason.str());
-  }
+  requireComparable(first_map.origin(), second_map.origin());
   Side first(first_map, options, threads), second(second_map, options, threads);
   const Comparison forwards(first, second, options), backwards(second, first, options);
   forEachSurface(first, threads, [&](std::size_t i, const Surface& surface, VoxelIndex::Cursor& cursor) {

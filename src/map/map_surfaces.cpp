@@ -60,6 +60,16 @@ const LabelledVoxelSums* addEntries(const LabelledVoxelSums* entry, const Labell
   return entry;
 }
 
+// Variance of a plane's height at `offset_m` from its mean: that of a plane fitted to points, of which those of one
+// scan, whose pose they share, count as one.
+float heightVariance(const Surface& surface, const Eigen::Vector3f& normal, const Eigen::Vector3f& offset_m) {
+  const float across_m2 = normal.dot(surface.covariance * normal);
+  const Eigen::Vector3f lateral_m = offset_m - normal * normal.dot(offset_m);
+  const Eigen::Matrix3f inverse = surface.covariance.inverse();
+  const float leverage = lateral_m.dot(inverse * lateral_m);
+  return across_m2 * (1.0F + leverage) / static_cast<float>(std::max(surface.scan_count, 1U));
+}
+
 }  // namespace
 
 MapSurfaces::MapSurfaces(const WeightedVoxelMap& map, int threads) : resolution_m_(map.resolution()) {
@@ -87,20 +97,6 @@ MapSurfaces::MapSurfaces(const WeightedVoxelMap& map, int threads) : resolution_
                  [](const Surface& surface) { return surface.voxel; });
   index_ = VoxelIndex(voxels);
 }
-
-namespace {
-
-// Variance of a plane's height at `offset_m` from its mean: that of a plane fitted to points, of which those of one
-// scan, whose pose they share, count as one.
-float heightVariance(const Surface& surface, const Eigen::Vector3f& normal, const Eigen::Vector3f& offset_m) {
-  const float across_m2 = normal.dot(surface.covariance * normal);
-  const Eigen::Vector3f lateral_m = offset_m - normal * normal.dot(offset_m);
-  const Eigen::Matrix3f inverse = surface.covariance.inverse();
-  const float leverage = lateral_m.dot(inverse * lateral_m);
-  return across_m2 * (1.0F + leverage) / static_cast<float>(std::max(surface.scan_count, 1U));
-}
-
-}  // namespace
 
 SurfacePair pairOf(const Surface& first, const Surface& second, double resolution_m) {
   SurfacePair pair;

@@ -127,7 +127,7 @@ TEST_F(MapDiffApp, SaysWhatIsWrongAndLeavesNothingBehind) {
   expectFails(SAW_NDT_APP, path("floor.map"), 2, {"missing B"});
   expectFails(SAW_NDT_APP, path("floor.map") + path("none.map"), 1, {"none.map: cannot be opened"});
   expectFails(SAW_NDT_APP, path("floor.map") + path("coarse.map"), 1,
-              {"coarse.map: cannot be compared with ", "floor.map: resolution_m: 0.5 and 1"});
+              {"coarse.map: cannot be compared with ", "floor.map: resolution_m = 1: must be"});
   expectFails(SAW_NDT_APP, both + "-least-points 2", 2, {"least_points = 2"});
   expectFails(SAW_NDT_APP, both + "-least-displacement 0", 2, {"least_displacement_m = 0"});
   expectFails(SAW_NDT_APP, both + "-picture " + path("out.svg"), 2, {"out.svg", "must end in .png"});

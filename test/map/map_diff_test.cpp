@@ -321,7 +321,11 @@ TEST(MapDiff, OfEmptyMapsIsNothing) {
 TEST(MapDiff, SaysWhatDoesNotHold) {
   const WeightedVoxelMap map = WeightedMapBuilder(0.5).build();
   expectThrows<std::invalid_argument>([&] { diffMaps(map, WeightedMapBuilder(1.0).build()); },
-                                      {"resolution_m: 0.5 and 1"});
+                                      {"resolution_m = 1: must be that of the other map, 0.5"});
+  MapOrigin elsewhere = map.origin();
+  elsewhere.map_origin_m.x() = 500000.0;
+  expectThrows<std::invalid_argument>([&] { diffMaps(map, WeightedVoxelMap(elsewhere, {})); },
+                                      {"map_origin_m = ", "500000", "must be that of the other map"});
   const auto withOption = [&map](auto set) {
     MapDiffOptions options;
     set(options);

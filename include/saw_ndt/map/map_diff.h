@@ -85,7 +85,7 @@ struct MapDiff {
 /// Compares two maps of one place, voxel by voxel, whatever the labels of their points. docs/maps.md says by which
 /// rules. The mirror image comes of the maps in the other order: appeared is vanished, displacements point back.
 /// @param threads  0: all cores; the result does not depend on it
-/// @throws std::invalid_argument where an option does not hold or voxels are not of one size
+/// @throws std::invalid_argument where an option does not hold, or sizes of voxels or origins of the maps differ
 SAW_NDT_EXPORT MapDiff diffMaps(const WeightedVoxelMap& first, const WeightedVoxelMap& second,
                                 const MapDiffOptions& options = {}, int threads = 0);
 
