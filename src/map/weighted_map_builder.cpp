@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -11,11 +10,11 @@
 
 #include "common/executor.h"
 #include "common/no_return.h"
+#include "map/merge_rules.h"
 #include "map/voxel_runs.h"
 #include "map/voxel_sums_table.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/version.h"
-#include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
 namespace {
@@ -74,30 +73,6 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
   return count;
 }
 
-void requireSameSegmentation(const std::optional<SegmentationOptions>& into,
-                             const std::optional<SegmentationOptions>& from) {
-  if (into.has_value() != from.has_value()) {
-    throw std::invalid_argument("segmentation: known of one of the maps to merge and not known of the other");
-  }
-  if (!into) return;
-  if (const auto difference = firstDifference(*into, *from)) {
-    throw std::invalid_argument("segmentation: the maps to merge differ in " + difference->field + ", which is " +
-                                difference->first + " in one and " + difference->second + " in the other");
-  }
-}
-
-// To be called before the sums are added; the order of additions does not matter. 0: not known of some of the points.
-void addScanCount(const LabelledVoxelSums& from, LabelledVoxelSums& into) {
-  if (into.sums.count == 0) {
-    into.scan_count = from.scan_count;
-  } else if (into.scan_count == 0 || from.scan_count == 0) {
-    into.scan_count = 0;
-  } else {
-    const std::uint64_t scan_count = std::uint64_t{into.scan_count} + from.scan_count;
-    into.scan_count = static_cast<std::uint32_t>(std::min<std::uint64_t>(scan_count, kMostScansOfVoxel));
-  }
-}
-
 }  // namespace
 
 WeightedMapBuilder::WeightedMapBuilder(double resolution_m, std::optional<SegmentationOptions> segmentation)
@@ -106,6 +81,13 @@ WeightedMapBuilder::WeightedMapBuilder(double resolution_m, std::optional<Segmen
   origin_.segmentation = std::move(segmentation);
   origin_.software_version = SAW_NDT_VERSION;
   origin_.check();
+}
+
+void WeightedMapBuilder::setMapOrigin(const Eigen::Vector3d& map_origin_m) {
+  MapOrigin origin = origin_;
+  origin.map_origin_m = map_origin_m;
+  origin.check();
+  origin_ = origin;
 }
 
 WeightedMapBuilder::~WeightedMapBuilder() = default;
@@ -126,12 +108,7 @@ void WeightedMapBuilder::requireKind(bool labelled) const {
 }
 
 void WeightedMapBuilder::beginAdding(bool labelled, const std::string& software_version) {
-  if (isEmpty()) {
-    origin_.labelled = labelled;
-    origin_.software_version = software_version;
-  } else if (origin_.software_version != software_version) {
-    origin_.software_version.clear();
-  }
+  internal::beginAdding(origin_, !isEmpty(), labelled, software_version);
 }
 
 void WeightedMapBuilder::requireAddable(const LabelView& labels, const Eigen::Isometry3d& T_map_scan) const {
@@ -191,30 +168,21 @@ void WeightedMapBuilder::merge(const WeightedMapBuilder& other) { merge(other.or
 void WeightedMapBuilder::merge(const WeightedVoxelMap& map) { merge(map.origin(), map.entries()); }
 
 void WeightedMapBuilder::merge(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) {
-  checkOption(origin.resolution_m == origin_.resolution_m, "resolution_m", fieldText(origin.resolution_m),
-              ("that of the map merged into, " + fieldText(origin_.resolution_m)).c_str());
   const bool adds = origin.scan_count != 0 || !entries.empty();
-  if (adds) requireKind(origin.labelled);
-  requireSameSegmentation(origin_.segmentation, origin.segmentation);
+  requireMergeable(origin_, !isEmpty(), origin, adds);
   if (!adds) return;
   requireRoomFor(origin, entries);
-  beginAdding(origin.labelled, origin.software_version);
+  const bool holds = !isEmpty();
   table_->add(entries,
               [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { addScanCount(from, into); });
-  origin_.scan_count += origin.scan_count;
-  origin_.point_count += origin.point_count;
+  addOrigin(origin_, holds, origin);
 }
 
 void WeightedMapBuilder::requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const {
-  if (origin.scan_count > std::numeric_limits<std::uint64_t>::max() - origin_.scan_count) {
-    throw std::invalid_argument("scan_count: more scans than can be counted");
-  }
   if (origin_.point_count + origin.point_count <= VoxelSums::kMostPoints) return;
   for (const LabelledVoxelSums& from : entries) {
     const LabelledVoxelSums* const into = table_->find(from.voxel, from.label);
-    if (into != nullptr && into->sums.count + from.sums.count > VoxelSums::kMostPoints) {
-      throw std::invalid_argument("a voxel would hold more than 2^33 points");
-    }
+    if (into != nullptr) internal::requireRoomFor(from.sums, into->sums);
   }
 }
 

@@ -32,6 +32,10 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   WeightedMapBuilder& operator=(const WeightedMapBuilder& other);
   WeightedMapBuilder& operator=(WeightedMapBuilder&& other) noexcept;
 
+  /// Tells where the map frame's origin lies in the frame that the points are given in (see MapOrigin).
+  /// @throws std::invalid_argument where it is not finite
+  void setMapOrigin(const Eigen::Vector3d& map_origin_m);
+
   /// Adds the points of a scan that are finite and not (0, 0, 0), which drivers write for no return. With labels the
   /// points count under them, without any the map becomes an unlabelled one; scans of the two kinds do not mix.
   /// addCloud() of pcl/cloud_view.h adds clouds of PCL.
