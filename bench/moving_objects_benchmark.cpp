@@ -1,6 +1,7 @@
 // Tells what removing what moved takes from a map, by the labels of simulated drives, and what that is worth to a
 // localizer.
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -8,6 +9,7 @@
 #include "app_options.h"
 #include "common/stopwatch.h"
 #include "moving_truth.h"
+#include "report/gnuplot.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/drive_localization.h"
 #include "saw_ndt/drives/moved_removal.h"
@@ -26,7 +28,7 @@ constexpr char kDescription[] =
 
 struct Arguments {
   std::vector<std::string> sequences, localize, methods{"classical", "weighted"}, shares{"0.3"};
-  std::string map_scans = ":", scans = ":";
+  std::string map_scans = ":", scans = ":", pictures;
   double skip_s = 3.0, resolution_m = saw_ndt::DriveMapOptions().resolution_m, max_range_m = 60.0;
   bool classical = false;
   int threads = 0;
@@ -48,22 +50,47 @@ void printScores(const std::string& name, const std::string& share, const Remova
       std::printf(" %.3f |", 100.0 * score.removedShare(static_cast<saw_ndt::PointKind>(kind)));
     }
   }
-  const auto percent = [](std::size_t part, std::size_t whole) {
-    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-  };
-  std::printf(" %.3f | %.1f | %.1f | %.1f | %.2f | %.2f |\n", 100.0 * score.removedStaticShare(),
-              100.0 * score.precision(), percent(score.removed_moving_voxels, score.moving_voxels),
-              percent(score.removed_moving_voxels, score.removed_voxels), building_s, removing_s);
+  std::printf(" %.3f | %.1f | %.1f | %.2f | %.2f |\n", 100.0 * score.removedStaticShare(), 100.0 * score.precision(),
+              100.0 * static_cast<double>(score.removed_moving_voxels) /
+                  static_cast<double>(std::max<std::size_t>(score.moving_voxels, 1)),
+              building_s, removing_s);
   std::fflush(stdout);
+}
+
+// What remains of a map and what was removed, seen from above.
+void draw(const std::string& name, const CleanedMap& maps, const std::string& folder) {
+  std::vector<std::vector<double>> remaining(2), removed(2);
+  auto kept = maps.remaining.entries().begin();
+  for (const saw_ndt::LabelledVoxelSums& entry : maps.whole.entries()) {
+    const bool stays =
+        kept != maps.remaining.entries().end() && kept->voxel == entry.voxel && kept->label == entry.label;
+    if (stays) ++kept;
+    if (entry.label == saw_ndt::StructuralLabel::GROUND) continue;
+    std::vector<std::vector<double>>& columns = stays ? remaining : removed;
+    for (int axis = 0; axis < 2; ++axis) {
+      columns[static_cast<std::size_t>(axis)].push_back((entry.voxel[axis] + 0.5) * maps.whole.resolution());
+    }
+  }
+  if (removed.front().empty()) return;
+  saw_ndt::GnuplotPicture picture;
+  picture.name = "moved_" + name;
+  picture.width_px = picture.height_px = 900;
+  picture.many_points = true;
+  picture.data = saw_ndt::gnuplotData("$remaining", remaining) + saw_ndt::gnuplotData("$removed", removed);
+  picture.commands =
+      "set size ratio -1\nset xlabel 'x (m)'\nset ylabel 'y (m)'\nset key outside top center horizontal\n"
+      "plot $remaining with dots linecolor rgb '#909090' title 'remains, without ground', "
+      "$removed with points pointtype 7 pointsize 0.25 linecolor rgb '#d62728' title 'removed'\n";
+  saw_ndt::drawPicture(picture, folder);
 }
 
 void printHeader() {
   std::cout << "Removed, % of the points of each kind; precision, % of the removed points; seconds:\n\n| drive | "
                "share |";
   for (const char* const kind : saw_ndt::pointKindNames()) std::cout << ' ' << kind << " |";
-  std::cout << " all but moving | precision | moving voxels removed | of the removed voxels | building s | removing s "
+  std::cout << " all but moving | precision | moving voxels removed | building s | removing s "
                "|\n|---|---|";
-  for (std::size_t i = 0; i < saw_ndt::kPointKinds + 6; ++i) std::cout << "---|";
+  for (std::size_t i = 0; i < saw_ndt::kPointKinds + 5; ++i) std::cout << "---|";
   std::cout << std::endl;
 }
 
@@ -149,6 +176,7 @@ int main(int argc, char** argv) {
   app.addOption("localize", &arguments.localize, "FOLDER,...", "for each SEQUENCE the drive to localize in its map");
   app.addOption("scans", &arguments.scans, "SLICE", "scans to localize");
   app.addOption("methods", &arguments.methods, "NAME,...", "of localization");
+  app.addOption("pictures", &arguments.pictures, "FOLDER", "draw what goes and what remains there, by gnuplot");
   app.addOption("skip", &arguments.skip_s, "SECONDS", "time at the start of a drive that the errors leave out");
   arguments.segmentation.addTo(app);
   return saw_ndt::runApp(argc, argv, app, [&] {
@@ -160,6 +188,10 @@ int main(int argc, char** argv) {
     std::vector<std::string> rows;
     for (std::size_t i = 0; i < arguments.sequences.size(); ++i) {
       const CleanedMap maps = cleanedMap(arguments.sequences[i], arguments);
+      if (!arguments.pictures.empty()) {
+        draw(std::to_string(i + 1) + "_" + saw_ndt::KittiSequence(arguments.sequences[i]).name(), maps,
+             arguments.pictures);
+      }
       if (arguments.localize.empty()) continue;
       for (const std::string& method : arguments.methods) {
         rows.push_back("| " + arguments.localize[i] + " | " + method + " | " +

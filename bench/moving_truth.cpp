@@ -35,6 +35,9 @@ PointKind kindOf(std::uint16_t semantic_class) {
     case 80:
     case 81:
       return PointKind::POLE;
+    case 0:
+    case 1:
+      return PointKind::UNLABELLED;
     default:
       return PointKind::OTHER;
   }
@@ -59,8 +62,8 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }  // namespace
 
 const std::array<const char*, kPointKinds>& pointKindNames() {
-  static const std::array<const char*, kPointKinds> names = {"moving",  "parked",     "ground", "facade",
-                                                             "barrier", "vegetation", "pole",   "other"};
+  static const std::array<const char*, kPointKinds> names = {"moving",     "parked", "ground", "facade",    "barrier",
+                                                             "vegetation", "pole",   "other",  "unlabelled"};
   return names;
 }
 
@@ -70,10 +73,10 @@ double RemovalScore::removedShare(PointKind kind) const {
 }
 
 double RemovalScore::removedStaticShare() const {
-  return share(sumOf(removed) - removed[0], sumOf(points) - points[0]);
+  return share(sumOf(removed) - removed.front() - removed.back(), sumOf(points) - points.front() - points.back());
 }
 
-double RemovalScore::precision() const { return share(removed[0], sumOf(removed)); }
+double RemovalScore::precision() const { return share(removed.front(), sumOf(removed) - removed.back()); }
 
 MovingTruth::MovingTruth(const KittiSequence& sequence, const std::vector<int>& scans, const DriveMapOptions& options,
                          const WeightedVoxelMap& map)
@@ -121,7 +124,6 @@ RemovalScore MovingTruth::score(const WeightedVoxelMap& map, const WeightedVoxel
     }
     const bool moving = 2 * not_ground[0] > sumOf(not_ground);
     score.moving_voxels += moving ? 1 : 0;
-    score.removed_voxels += removed ? 1 : 0;
     score.removed_moving_voxels += moving && removed ? 1 : 0;
   }
   return score;

@@ -12,9 +12,9 @@
 
 namespace saw_ndt {
 
-/// What a point was measured on, by its class of SemanticKITTI.
-enum class PointKind { MOVING, PARKED, GROUND, FACADE, BARRIER, VEGETATION, POLE, OTHER };
-constexpr std::size_t kPointKinds = 8;
+/// What a point was measured on, by its class of SemanticKITTI: UNLABELLED are classes 0 and 1, such as droplets.
+enum class PointKind { MOVING, PARKED, GROUND, FACADE, BARRIER, VEGETATION, POLE, OTHER, UNLABELLED };
+constexpr std::size_t kPointKinds = 9;
 /// "moving" and so on, in their order.
 const std::array<const char*, kPointKinds>& pointKindNames();
 
@@ -31,16 +31,16 @@ struct RemovalScore {
 
   /// Share of the points of a kind that were removed, 0 where there is none.
   double removedShare(PointKind kind) const;
-  /// Share of all points of what does not move that were removed.
+  /// Share of all points of what does not move that were removed; those without a class are not counted.
   double removedStaticShare() const;
-  /// Share of the removed points that are of what moves.
+  /// Share of the removed points that are of what moves, of those with a class.
   double precision() const;
 };
 
 /// What the points of a map were measured on, by the labels of its drive.
 class MovingTruth {
  public:
-  /// @param map      of these scans, by these options
+  /// @param map  of these scans, by these options
   /// @throws Error where a scan or its labels cannot be read
   MovingTruth(const KittiSequence& sequence, const std::vector<int>& scans, const DriveMapOptions& options,
               const WeightedVoxelMap& map);

@@ -97,7 +97,8 @@ TEST_F(DriveAmongTraffic, WhatPassedGoesAndWhatStandsStaysWhole) {
     }
     EXPECT_TRUE(kept == remaining.entries().end());
     EXPECT_GT(passing, 3000U);
-    EXPECT_GT(static_cast<double>(passing_removed), 0.95 * static_cast<double>(passing)) << labelled;
+    // What was at places that fewer than three scans saw without it, at either end, stays.
+    EXPECT_GT(static_cast<double>(passing_removed), 0.7 * static_cast<double>(passing)) << labelled;
     // Parked cars, poles, walls and ground.
     EXPECT_EQ(standing_removed, 0U) << labelled;
     EXPECT_EQ(remaining.origin().point_count, points);
