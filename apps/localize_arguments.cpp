@@ -58,8 +58,8 @@ void LocalizeArguments::addTo(AppOptions& app) {
                 "until that is done)");
   app.addOption(
       "map-radius", &options.tiles.radius_m, "METRES",
-      "how far around the vehicle tiles of a map of saw_ndt_map_pack are held, at least; as far as scans reach "
-      "in any case");
+      "how far around the vehicle tiles of a map of saw_ndt_map_pack are held; points of scans that lie farther "
+      "away are left out");
   app.addOption("map-memory", &map_memory_mb, "MB",
                 "for the voxels around one place at most; where that is less than needed, fewer tiles are held");
   app.addFlag("no-search", &no_search_, "do not look for a pose that is lost, but align from predictions alone");

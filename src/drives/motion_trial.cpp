@@ -173,7 +173,7 @@ std::vector<double> fitsOfCompensated(TiledTarget target, LocalizerOptions optio
                                       MotionCompensation compensation) {
   options.search = false;
   const AlignmentOptions alignment = Localizer(target, options).options().alignment;
-  ScanPreparation preparation(preparationOptions(options));
+  ScanPreparation preparation(preparationFor(target, options));
   NdtAligner aligner;
   ScanPeriod period(options.scan_period_s);
   for (const RecordedScan& scan : scans) period.add(scan.stamp_s);
@@ -186,7 +186,7 @@ std::vector<double> fitsOfCompensated(TiledTarget target, LocalizerOptions optio
                      compensated.points);
     }
     const SourcePoints& source = preparation.prepare(viewOf(compensated));
-    const NdtTarget target_there = target.at(at.T_map_base.translation(), source.reach());
+    const NdtTarget target_there = target.at(at.T_map_base.translation(), 0.0);
     fits.push_back(fitOf(aligner.align(target_there, source, at.T_map_base, alignment)));
   }
   return fits;

@@ -90,6 +90,12 @@ const TiledTarget& checkedTarget(const TiledTarget& target, const LocalizerOptio
 
 }  // namespace
 
+ScanPreparationOptions internal::preparationFor(const TiledTarget& target, const LocalizerOptions& options) {
+  ScanPreparationOptions preparation = preparationOptions(options);
+  preparation.max_reach_m = target.reach();
+  return preparation;
+}
+
 void LocalizerOptions::check() const {
   method.check();
   prediction.check();
@@ -114,7 +120,7 @@ Localizer::Localizer(const NdtTarget& target, const LocalizerOptions& options)
 
 Localizer::Localizer(const TiledTarget& target, const LocalizerOptions& options)
     : options_(withMethod(options)),
-      preparation_(preparationOptions(options_)),
+      preparation_(preparationFor(target, options_)),
       prediction_(options.prediction),
       finder_(std::make_unique<PoseFinder>(checkedTarget(target, options_), options_)),
       moving_(makeMoving(options_, true)) {}
@@ -360,7 +366,6 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
   result.T_map_base_predicted = work.predicted.T_map_base;
   const SourcePoints& source = preparation_.prepare(scan, moving_ ? moving_->motion.begin(stamp_s) : ScanTiming());
   result.source_points = source.size();
-  finder_->begin(source.reach());
   result.times.segment_ms = preparation_.segmentMilliseconds();
   result.times.filter_ms = preparation_.filterMilliseconds();
 

@@ -2,26 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <map>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "common/atomic_output.h"
 #include "common/executor.h"
 #include "localization/place_index.h"
 #include "localization/place_table.h"
 #include "map/coarse_sums.h"
 #include "map/level_plan.h"
-#include "map/localization_map_layout.h"
+#include "map/localization_map_writer.h"
 #include "map/localization_tile.h"
 #include "map/map_file.h"
-#include "map/map_file_layout.h"
-#include "map/map_metadata.h"
 #include "map/sums_statistics.h"
-#include "map/weighting_fields.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -31,7 +25,7 @@ using namespace internal;
 namespace {
 
 // Tiles along the edge of a block: what is packed at a time.
-constexpr int kBlockTiles = 8;
+constexpr int kBlockTiles = 4;
 // Ground is taken to go on so many tiles from where it is seen at most.
 constexpr int kRingTiles = 1;
 
@@ -44,13 +38,8 @@ std::vector<LevelPlan> levelsOf(const TargetPlan& plan) {
   return levels;
 }
 
-// A tile as it stands in the file.
-struct PackedTile {
-  TileCoordinate at;
-  std::string cells, table;
-  std::uint64_t voxel_count = 0;
-  std::uint64_t coarse_voxel_count = 0;
-};
+// Calls visit(entries) with one part after the other.
+using EntriesInParts = std::function<void(const std::function<void(const std::vector<LabelledVoxelSums>&)>& visit)>;
 
 // Packs blocks of tiles, each from the entries in it and around it.
 class BlockPacker {
@@ -66,9 +55,9 @@ class BlockPacker {
     return kRingTiles * kLocalizationTile_m + largest_m;
   }
 
-  /// @param entries  of the block and the margin around it, in map order
-  std::vector<PackedTile> pack(const TileCoordinate& block, const std::vector<LabelledVoxelSums>& entries) const {
-    const std::map<TileCoordinate, LocalizationTile> tiles = tilesAround(block, entries);
+  /// @param entries  those of the block and the margin around it, in map order and in parts of whole voxels
+  std::vector<PackedTile> pack(const TileCoordinate& block, const EntriesInParts& entries) const {
+    std::map<TileCoordinate, LocalizationTile> tiles = tilesAround(block, entries);
     std::map<TileCoordinate, PackedTile> packed;
     const auto packedAt = [&](const TileCoordinate& at) -> PackedTile& {
       const auto [found, is_new] = packed.try_emplace(at);
@@ -76,19 +65,20 @@ class BlockPacker {
         LocalizationTile none;
         none.levels.resize(levels_.size());
         found->second.at = at;
-        found->second.cells = encodedTile(none);
+        found->second.cells = encodedTile(none, resolutions_m_);
       }
       return found->second;
     };
     std::vector<NdtCells> cells(levels_.size());
-    for (const auto& [at, tile] : tiles) {
-      const std::string bytes = encodedTile(tile);
-      appendDecodedTile(bytes.data(), bytes.size(), at, resolutions_m_, weighting_, cells);
+    for (auto& [at, tile] : tiles) {
+      const std::string bytes = encodedTile(tile, resolutions_m_);
+      appendDecodedTile(bytes.data(), bytes.size(), at, resolutions_m_, weighting_, {}, cells);
       if (!isIn(block, at, 0)) continue;
       PackedTile& of_tile = packedAt(at);
       of_tile.cells = bytes;
       of_tile.coarse_voxel_count = plan_.coarse ? tile.levels.back().cells.size() : 0;
       of_tile.voxel_count = tile.cellCount() - of_tile.coarse_voxel_count;
+      tile.levels.clear();
     }
     // From the voxels as they will be read.
     std::vector<NdtLevel> read;
@@ -112,31 +102,36 @@ class BlockPacker {
   }
 
   std::map<TileCoordinate, LocalizationTile> tilesAround(const TileCoordinate& block,
-                                                         const std::vector<LabelledVoxelSums>& entries) const {
+                                                         const EntriesInParts& entries) const {
     std::map<TileCoordinate, LocalizationTile> tiles;
-    for (std::size_t i = 0; i < levels_.size(); ++i) {
-      const double resolution_m = resolutions_m_[i];
-      const auto add = [&](const std::vector<VoxelStatistics>& statistics) {
+    const auto add = [&](std::size_t i, const std::vector<LabelledVoxelSums>& of_level) {
+      const auto add_batch = [&](const std::vector<VoxelStatistics>& statistics) {
         for (const VoxelStatistics& voxel : statistics) {
-          const TileCoordinate at = localizationTileOf(voxel.voxel, resolution_m);
+          const TileCoordinate at = localizationTileOf(voxel.voxel, resolutions_m_[i]);
           if (!isIn(block, at, kRingTiles)) continue;
           LocalizationTile& tile = tiles[at];
           tile.at = at;
           tile.levels.resize(levels_.size());
-          tile.add(i, voxel, resolution_m);
+          tile.add(i, voxel, resolutions_m_[i]);
         }
       };
-      const double metres_per_step = origin_.resolution_m / kStepsPerVoxel;
-      if (levels_[i].factor == 1) {
-        forEachStatistics(entries.data(), entries.data() + entries.size(), weighting_, levels_[i], metres_per_step,
-                          add);
-        continue;
-      }
-      CoarseSums sums(levels_[i].factor);
-      sums.add(entries.data(), entries.data() + entries.size());
-      const std::vector<LabelledVoxelSums> larger = sums.takeInMapOrder();
-      forEachStatistics(larger.data(), larger.data() + larger.size(), weighting_, levels_[i], metres_per_step, add);
+      forEachStatistics(of_level.data(), of_level.data() + of_level.size(), weighting_, levels_[i],
+                        origin_.resolution_m / kStepsPerVoxel, add_batch);
+    };
+    std::map<std::size_t, CoarseSums> larger;
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      if (levels_[i].factor > 1) larger.emplace(i, levels_[i].factor);
     }
+    entries([&](const std::vector<LabelledVoxelSums>& part) {
+      for (std::size_t i = 0; i < levels_.size(); ++i) {
+        if (levels_[i].factor == 1) {
+          add(i, part);
+        } else {
+          larger.at(i).add(part.data(), part.data() + part.size());
+        }
+      }
+    });
+    for (auto& [level, sums] : larger) add(level, sums.takeInMapOrder());
     return tiles;
   }
 
@@ -145,86 +140,6 @@ class BlockPacker {
   TargetPlan plan_;
   std::vector<LevelPlan> levels_;
   std::vector<double> resolutions_m_;
-};
-
-// Writes tiles as they come, and in the end what lies before and behind them.
-class LocalizationMapWriter {
- public:
-  LocalizationMapWriter(const std::string& path, const MapOrigin& origin, const VoxelWeighting& weighting)
-      : origin_(origin), metadata_(metadataText(origin) + weightingText(weighting)), output_(path) {
-    offset_ = sizeof(LocalizationMapHeader) + metadata_.size();
-    output_.stream().seekp(static_cast<std::streamoff>(offset_));
-  }
-
-  void add(const PackedTile& tile) {
-    LocalizationTileRecord record;
-    record.x = tile.at.x;
-    record.y = tile.at.y;
-    record.offset = offset_;
-    record.cell_bytes = static_cast<std::uint32_t>(tile.cells.size());
-    record.cell_checksum = checksumOf(tile.cells.data(), tile.cells.size());
-    record.table_bytes = static_cast<std::uint32_t>(tile.table.size());
-    record.table_checksum = checksumOf(tile.table.data(), tile.table.size());
-    record.voxel_count = static_cast<std::uint32_t>(tile.voxel_count);
-    record.checksum = checksumOf(&record, offsetof(LocalizationTileRecord, checksum));
-    directory_.emplace(tile.at, record);
-    output_.stream() << tile.cells << tile.table;
-    offset_ += tile.cells.size() + tile.table.size();
-    voxel_count_ += tile.voxel_count;
-    coarse_voxel_count_ += tile.coarse_voxel_count;
-  }
-
-  void finish() {
-    std::ostream& stream = output_.stream();
-    LocalizationMapHeader header;
-    std::memset(&header, 0, sizeof header);
-    std::memcpy(header.magic, kLocalizationMapMagic, sizeof header.magic);
-    header.version = kLocalizationMapVersion;
-    header.header_bytes = static_cast<std::uint32_t>(sizeof header);
-    header.resolution_m = origin_.resolution_m;
-    header.tile_m = kLocalizationTile_m;
-    header.labelled = origin_.labelled ? 1U : 0U;
-    header.metadata_bytes = static_cast<std::uint32_t>(metadata_.size());
-    header.scan_count = origin_.scan_count;
-    header.point_count = origin_.point_count;
-    header.voxel_count = voxel_count_;
-    header.coarse_voxel_count = coarse_voxel_count_;
-    header.tile_count = directory_.size();
-    header.directory_offset = offset_;
-    header.file_bytes = offset_ + directory_.size() * sizeof(LocalizationTileRecord);
-    writeExtent(header);
-    header.metadata_checksum = checksumOf(metadata_.data(), metadata_.size());
-    header.checksum = checksumOf(&header, offsetof(LocalizationMapHeader, checksum));
-    for (const auto& [at, record] : directory_) {
-      stream.write(reinterpret_cast<const char*>(&record), sizeof record);
-    }
-    stream.seekp(0);
-    stream.write(reinterpret_cast<const char*>(&header), sizeof header);
-    stream << metadata_;
-    output_.commit();
-  }
-
- private:
-  void writeExtent(LocalizationMapHeader& header) const {
-    if (directory_.empty()) return;
-    int least_x = std::numeric_limits<int>::max(), greatest_x = std::numeric_limits<int>::min();
-    for (const auto& [at, record] : directory_) {
-      least_x = std::min(least_x, at.x);
-      greatest_x = std::max(greatest_x, at.x);
-    }
-    header.least_m[0] = least_x * kLocalizationTile_m;
-    header.least_m[1] = directory_.begin()->first.y * kLocalizationTile_m;
-    header.greatest_m[0] = (greatest_x + 1.0) * kLocalizationTile_m;
-    header.greatest_m[1] = (directory_.rbegin()->first.y + 1.0) * kLocalizationTile_m;
-  }
-
-  MapOrigin origin_;
-  std::string metadata_;
-  AtomicOutput output_;
-  std::map<TileCoordinate, LocalizationTileRecord> directory_;
-  std::uint64_t offset_ = 0;
-  std::uint64_t voxel_count_ = 0;
-  std::uint64_t coarse_voxel_count_ = 0;
 };
 
 // The entries of a map file around blocks of tiles. Of the file only the tiles that a block needs are in memory.
@@ -253,15 +168,16 @@ class EntriesAroundBlocks {
     return blocks;
   }
 
-  // In map order.
-  std::vector<LabelledVoxelSums> around(const TileCoordinate& block) const {
-    std::vector<LabelledVoxelSums> entries, of_tile;
-    for (const std::uint64_t place : tiles_of_block_.at(block)) {
-      reader_.decodeTile(place, of_tile);
-      reader_.forget(reader_.front().tile(place));
-      entries.insert(entries.end(), of_tile.begin(), of_tile.end());
-    }
-    return entries;
+  // Tile after tile.
+  EntriesInParts around(const TileCoordinate& block) const {
+    return [this, &tiles = tiles_of_block_.at(block)](const auto& visit) {
+      std::vector<LabelledVoxelSums> entries;
+      for (const std::uint64_t place : tiles) {
+        reader_.decodeTile(place, entries);
+        reader_.forget(reader_.front().tile(place));
+        visit(entries);
+      }
+    };
   }
 
  private:

@@ -31,16 +31,14 @@ class SAW_NDT_EXPORT PoseFinder {
   /// Aligns to a target by the alignment of the options, and searches it.
   PoseFinder(const TiledTarget& target, const LocalizerOptions& options);
 
-  /// Takes over what follows is about.
-  /// @param reach_m  greatest horizontal distance of the scan's points
-  void begin(double reach_m) { reach_m_ = reach_m; }
   /// What the scan is registered to at a pose. @pre there is a target
+  /// @param further_m  how far from there the scan may be taken to be as well
   NdtTarget targetAt(const Eigen::Isometry3d& T_map_base, double further_m = 0.0) {
-    return target_->at(T_map_base.translation(), reach_m_ + further_m);
+    return target_->at(T_map_base.translation(), further_m > 0.0 ? target_->reach() + further_m : 0.0);
   }
   /// Prepares for scans to come.
   void loadAhead(const Eigen::Isometry3d& T_map_base, const Eigen::Vector3d& velocity_mps) {
-    if (target_) target_->loadAhead(T_map_base.translation(), velocity_mps, reach_m_);
+    if (target_) target_->loadAhead(T_map_base.translation(), velocity_mps);
   }
   /// What became of loading tiles; null without a target.
   const TileLoads* tileLoads() const { return target_ ? &target_->loads() : nullptr; }
@@ -93,7 +91,6 @@ class SAW_NDT_EXPORT PoseFinder {
   NdtAligner ndt_aligner_;
   AlignmentOptions alignment_;
   std::optional<TiledTarget> target_;
-  double reach_m_ = 0.0;
   std::optional<GlobalSearch> search_;
   PoseJudge judge_;
   double min_advantage_sigmas_;

@@ -172,25 +172,24 @@ std::vector<LocalizationTilePlace> LocalizationMapFile::tilesAround(const Eigen:
   return tiles;
 }
 
-void LocalizationMapFile::decode(const LocalizationTilePlace& tile, std::vector<NdtCells>& cells) const {
-  const char* const bytes = file_.data() + tile.offset;
-  if (checksumOf(bytes, tile.cell_bytes) != tile.cell_checksum) {
-    fail(tile.offset, "damaged: the checksum of a tile does not match");
-  }
-  if (!appendDecodedTile(bytes, tile.cell_bytes, tile.at, resolutions_m_, weighting_, cells)) {
+void LocalizationMapFile::decode(const LocalizationTilePlace& tile, const LocalizationClip& clip,
+                                 std::vector<NdtCells>& cells) const {
+  const std::string_view bytes = this->cells(tile);
+  if (!appendDecodedTile(bytes.data(), bytes.size(), tile.at, resolutions_m_, weighting_, clip, cells)) {
     fail(tile.offset, "damaged: a tile has voxels that cannot be");
   }
   file_.forget(tile.offset, tile.cell_bytes);
 }
 
-NdtTarget LocalizationMapFile::targetOf(const std::vector<LocalizationTilePlace>& tiles, int threads) const {
+NdtTarget LocalizationMapFile::targetOf(const std::vector<LocalizationTilePlace>& tiles, int threads,
+                                        const LocalizationClip& clip) const {
   // Few parts, for each is copied once more.
   const std::size_t part_count =
       std::clamp<std::size_t>(tiles.size(), 1, static_cast<std::size_t>(threadCount(threads)));
   std::vector<std::vector<NdtCells>> parts(part_count, std::vector<NdtCells>(resolutions_m_.size()));
   forEachChunk(threads, part_count, [&](std::size_t part, int) {
     for (std::size_t i = tiles.size() * part / part_count; i < tiles.size() * (part + 1) / part_count; ++i) {
-      decode(tiles[i], parts[part]);
+      decode(tiles[i], clip, parts[part]);
     }
   });
   std::vector<NdtLevel> levels(resolutions_m_.size());
@@ -200,6 +199,14 @@ NdtTarget LocalizationMapFile::targetOf(const std::vector<LocalizationTilePlace>
     levels[level] = NdtLevel(resolutions_m_[level], std::move(cells));
   });
   return NdtTarget::ofLevels(origin_, weighting_, std::move(levels));
+}
+
+std::string_view LocalizationMapFile::cells(const LocalizationTilePlace& tile) const {
+  const std::string_view cells(file_.data() + tile.offset, tile.cell_bytes);
+  if (checksumOf(cells.data(), cells.size()) != tile.cell_checksum) {
+    fail(tile.offset, "damaged: the checksum of a tile does not match");
+  }
+  return cells;
 }
 
 std::string_view LocalizationMapFile::searchTable(const LocalizationTilePlace& tile) const {
@@ -244,7 +251,7 @@ NdtTarget LocalizationMap::target(int threads) const {
 }
 
 NdtTarget LocalizationMap::targetAround(const Eigen::Vector3d& position_m, double radius_m, int threads) const {
-  return file_->targetOf(file_->tilesAround(position_m.head<2>(), radius_m), threads);
+  return file_->targetOf(file_->tilesAround(position_m.head<2>(), radius_m), threads, {position_m.head<2>(), radius_m});
 }
 
 }  // namespace saw_ndt

@@ -47,7 +47,10 @@ class SAW_NDT_EXPORT LocalizationMapFile {
   std::vector<LocalizationTilePlace> tilesAround(const Eigen::Vector2d& position_m, double radius_m) const;
 
   /// The target of some tiles, in their order.
-  NdtTarget targetOf(const std::vector<LocalizationTilePlace>& tiles, int threads) const;
+  NdtTarget targetOf(const std::vector<LocalizationTilePlace>& tiles, int threads,
+                     const LocalizationClip& clip = {}) const;
+  /// The voxels of a tile as they stand in the file.
+  std::string_view cells(const LocalizationTilePlace& tile) const;
   /// The search table of a tile as it stands in the file; empty where there is none.
   std::string_view searchTable(const LocalizationTilePlace& tile) const;
 
@@ -55,7 +58,7 @@ class SAW_NDT_EXPORT LocalizationMapFile {
   [[noreturn]] void fail(std::uint64_t offset, const std::string& reason) const;
   void readHeader();
   void readMetadata(std::uint32_t size, std::uint32_t checksum);
-  void decode(const LocalizationTilePlace& tile, std::vector<NdtCells>& cells) const;
+  void decode(const LocalizationTilePlace& tile, const LocalizationClip& clip, std::vector<NdtCells>& cells) const;
 
   std::string path_;
   MappedFile file_;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,10 +33,16 @@ TileCoordinate localizationTileOf(const VoxelCoordinate& voxel, double resolutio
 /// The tile that holds a position (m). @pre less than 1e9 m away
 TileCoordinate localizationTileAt(double x_m, double y_m);
 
+/// Voxels are left out whose middle is farther than that from a place, horizontally (m).
+struct LocalizationClip {
+  Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
+  double radius_m = std::numeric_limits<double>::infinity();
+};
+
 /// The voxels of one level in a tile.
 struct TileLevel {
-  std::vector<std::int32_t> z;       ///< of each voxel
-  std::vector<QuantizedCell> cells;  ///< whose place along z is set when they are encoded
+  std::vector<VoxelCoordinate> voxels;
+  std::vector<QuantizedCell> cells;  ///< whose places are set when they are encoded
 };
 
 /// One tile of a localization map, level after level.
@@ -43,14 +50,16 @@ struct LocalizationTile {
   TileCoordinate at;
   std::vector<TileLevel> levels;
 
-  /// Adds a voxel that belongs to the tile to a level whose voxels have that edge. Those of a level keep their order.
+  /// Adds a voxel that belongs to the tile to a level whose voxels have that edge.
   void add(std::size_t level, const VoxelStatistics& statistics, double resolution_m);
   std::size_t cellCount() const;
 };
 
-/// The bytes of a tile: for each level u32 cells and i32 least z, then the cells level after level.
+/// The bytes of a tile: for each level u32 cells and i32 least z, then the cells level after level, those of a level by
+/// bricks of 8 x 8 x 8, in which VoxelIndex has them.
+/// @param resolutions_m  of each level
 /// @throws std::length_error where the voxels of a level lie 65,536 or more above each other
-std::string encodedTile(const LocalizationTile& tile);
+std::string encodedTile(const LocalizationTile& tile, const std::vector<double>& resolutions_m);
 
 /// Appends the cells of a tile to those of its levels, in the arrangement of a target: the matching levels, then the
 /// coarse one where there is one.
@@ -58,6 +67,6 @@ std::string encodedTile(const LocalizationTile& tile);
 /// @return false where the bytes are no such tile; nothing is to be used then
 bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate& at,
                        const std::vector<double>& resolutions_m, const VoxelWeighting& weighting,
-                       std::vector<NdtCells>& cells);
+                       const LocalizationClip& clip, std::vector<NdtCells>& cells);
 
 }  // namespace saw_ndt::internal

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "map/localization_map_layout.h"
 #include "map/map_file_layout.h"
 #include "map/map_metadata.h"
 #include "saw_ndt/common/error.h"
@@ -70,6 +71,9 @@ const char* MapFront::at(std::uint64_t offset, std::uint64_t count) const {
 void MapFront::readMagicAndVersion() {
   constexpr std::size_t kMagicSize = sizeof kMapMagic - 1;
   if (file_.size() < kMagicSize) fail(0, "not a saw_ndt map: too short");
+  if (std::memcmp(file_.data(), kLocalizationMapMagic, kMagicSize) == 0) {
+    fail(0, "is a localization map, where the statistics map is needed that it was packed from");
+  }
   if (std::memcmp(file_.data(), kMapMagic, kMagicSize) != 0) fail(0, "not a saw_ndt map");
   boost::endian::little_uint32_buf_t version;
   std::memcpy(&version, at(kMagicSize, sizeof version), sizeof version);

@@ -11,7 +11,7 @@ namespace saw_ndt {
 
 /// Writes the LocalizationMap of a map file for one weighting, such as LocalizationMethod::voxels: its voxels quantized
 /// to 32 bytes (docs/localization_map.md has the bounds), and the tables of GlobalSearch. It works through the map
-/// block by block of 512 m, so that memory does not grow with the map. The file appears once it is whole.
+/// block by block of 256 m, so that memory does not grow with the map. The file appears once it is whole.
 /// @param threads   0: all cores; the file does not depend on it
 /// @param progress  called with the blocks that are done, and how many there are; may be empty
 /// @throws std::invalid_argument where the weighting does not hold. Error where the map is missing or damaged or has

@@ -39,7 +39,7 @@ class SAW_NDT_EXPORT LocalizationMap {
 
   /// All of its voxels. @throws Error where a tile is damaged. @param threads  0: all cores
   NdtTarget target(int threads = 0) const;
-  /// Those of its tiles that reach within a horizontal distance of a position in the map frame (m).
+  /// The voxels whose middle lies within a horizontal distance of a position in the map frame (m).
   NdtTarget targetAround(const Eigen::Vector3d& position_m, double radius_m, int threads = 0) const;
 
   /// For this project's own code.

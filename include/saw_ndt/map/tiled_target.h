@@ -5,7 +5,6 @@
 #include <future>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/map/localization_map.h"
@@ -15,10 +14,10 @@ namespace saw_ndt {
 
 /// Which tiles of a localization map are kept in memory.
 struct SAW_NDT_EXPORT TiledTargetOptions {
-  double radius_m = 100.0;     ///< around the vehicle, at least; scans that reach farther make it larger
-  double hysteresis_m = 50.0;  ///< beyond that, so that tiles change so rarely
-  double lookahead_s = 3.0;    ///< how long before they are needed tiles are loaded
-  /// Bound of the memory of the voxels around one place (bytes); up to three such sets are there at a time. Where it
+  double radius_m = 100.0;     ///< around the vehicle; points of scans that lie farther away are left out
+  double hysteresis_m = 20.0;  ///< how far the vehicle goes until others are needed
+  double lookahead_s = 3.0;    ///< how long before that they are loaded, no further ahead than hysteresis_m
+  /// Bound of the memory of the voxels around one place (bytes); two such sets are there while one is loaded. Where it
   /// would be exceeded the radius is smaller, and points of scans beyond it meet no voxels.
   std::size_t most_bytes = std::size_t{256} << 20U;
 
@@ -29,7 +28,8 @@ struct SAW_NDT_EXPORT TiledTargetOptions {
 /// What became of loading tiles.
 struct TileLoads {
   std::size_t loads = 0;         ///< sets of tiles that were loaded
-  std::size_t waits = 0;         ///< of them, those that had to be waited for, but for the first
+  std::size_t wide_loads = 0;    ///< of them, those that reach farther, to compare a pose in doubt; scans waited
+  std::size_t waits = 0;         ///< of the others, those that had to be waited for, but for the first
   double longest_wait_ms = 0.0;  ///< but for the first
   double first_load_ms = 0.0;
   double longest_load_ms = 0.0;
@@ -38,8 +38,8 @@ struct TileLoads {
 
 /// The target that scans are registered to as a vehicle moves: of a localization map the tiles around it, of any other
 /// target all of it. Every target that it gives out has all voxels that a scan there can meet, so that poses are the
-/// same bits as in the whole map. Tiles ahead are loaded by a thread of its own. Copies share what is in memory, and
-/// then go ways of their own; one object is not to be shared by threads.
+/// same bits as in the whole map, of scans that reach no farther than reach(). Tiles ahead are loaded by a thread of
+/// its own. Copies share what is in memory, and then go ways of their own; one object is not to be shared by threads.
 class SAW_NDT_EXPORT TiledTarget {
  public:
   /// All of a target, everywhere.
@@ -58,14 +58,15 @@ class SAW_NDT_EXPORT TiledTarget {
   bool labelled() const { return origin().labelled; }
   /// The map that tiles are taken from; nothing for a whole target.
   const std::optional<LocalizationMap>& map() const { return map_; }
+  /// How far the points of a scan may lie from the base, horizontally (m): infinite for a whole target.
+  double reach() const;
 
   /// What a scan is registered to, taken at a position in the map frame (m) or some metres away from it. Waits for
   /// tiles that are not in memory. @throws Error where a tile is damaged
-  /// @param reach_m  greatest horizontal distance of its points
+  /// @param reach_m  greatest horizontal distance of what is asked for; tiles reach as far as reach() in any case
   NdtTarget at(const Eigen::Vector3d& position_m, double reach_m);
   /// Begins to load tiles that will be needed soon, without waiting.
-  /// @param reach_m  of a scan
-  void loadAhead(const Eigen::Vector3d& position_m, const Eigen::Vector3d& velocity_mps, double reach_m);
+  void loadAhead(const Eigen::Vector3d& position_m, const Eigen::Vector3d& velocity_mps);
 
   const TileLoads& loads() const { return loads_; }
 
@@ -89,8 +90,8 @@ class SAW_NDT_EXPORT TiledTarget {
   };
 
   static Window loaded(const LocalizationMap& map, Window plan, std::size_t most_bytes, int threads);
+  static bool isReady(const Loading& loading);
   double neededReach(double reach_m) const;
-  double loadedReach(double reach_m) const;
   Window planAround(const Eigen::Vector2d& centre_m, double needed_m) const;
   void begin(const Window& plan);
   const NdtTarget& take(Window window);
@@ -98,9 +99,8 @@ class SAW_NDT_EXPORT TiledTarget {
   TiledTargetOptions options_;
   std::optional<NdtTarget> whole_;
   std::optional<LocalizationMap> map_;
-  std::vector<Window> windows_;  // the one used last first, at most two
+  std::optional<Window> window_;  // the one in use
   std::optional<Loading> ahead_;
-  double scan_reach_m_ = 0.0;
   double largest_voxel_m_ = 0.0;
   TileLoads loads_;
 };

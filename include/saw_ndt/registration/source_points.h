@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -26,12 +25,6 @@ struct SourcePoints {
 
   std::size_t size() const { return x.size(); }
   bool empty() const { return x.empty(); }
-  /// The greatest horizontal distance of a point from the origin (m); 0 without points.
-  double reach() const {
-    float squared = 0.0F;
-    for (std::size_t i = 0; i < x.size(); ++i) squared = std::max(squared, x[i] * x[i] + y[i] * y[i]);
-    return std::sqrt(static_cast<double>(squared));
-  }
   void clear() {
     x.clear();
     y.clear();
