@@ -71,10 +71,16 @@ void draw(const std::string& name, const CleanedMap& maps, const std::string& fo
       columns[static_cast<std::size_t>(axis)].push_back((entry.voxel[axis] + 0.5) * maps.whole.resolution());
     }
   }
-  if (removed.front().empty()) return;
+  if (removed.front().empty() || remaining.front().empty()) return;
   saw_ndt::GnuplotPicture picture;
   picture.name = "moved_" + name;
-  picture.width_px = picture.height_px = 900;
+  const auto extent = [](const std::vector<double>& values) {
+    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    return *greatest - *least;
+  };
+  picture.width_px = 900;
+  picture.height_px =
+      static_cast<int>(std::clamp(820.0 * extent(remaining[1]) / extent(remaining[0]), 200.0, 900.0)) + 120;
   picture.many_points = true;
   picture.data = saw_ndt::gnuplotData("$remaining", remaining) + saw_ndt::gnuplotData("$removed", removed);
   picture.commands =
