@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "app_options.h"
+#include "common/large_blocks.h"
 #include "io/stamp_check.h"
 #include "live_scans.h"
 #include "localize_arguments.h"
@@ -23,6 +24,7 @@ constexpr char kDescription[] =
     "then in all of the map.";
 
 saw_ndt::TiledTarget loadTarget(const std::string& file, const saw_ndt::LocalizerOptions& options) {
+  saw_ndt::internal::returnLargeBlocks();
   saw_ndt::TiledTarget target =
       saw_ndt::TiledTarget::open(file, options.method.voxels, options.tiles, options.alignment.threads);
   if (options.method.segment && !target.labelled()) {

@@ -22,7 +22,7 @@ void merge(const std::string& merged_file, const std::vector<std::string>& map_f
   const saw_ndt::WrittenMap map = saw_ndt::mergeMapFiles(map_files, merged_file, threads);
   std::cout << merged_file << ": " << map.voxel_count << " voxels of " << map.origin.resolution_m << " m from "
             << map.origin.point_count << " points of " << map.origin.scan_count << " scans of " << map_files.size()
-            << " maps\n";
+            << (map_files.size() == 1 ? " map\n" : " maps\n");
   if (dead_bytes != 0) std::cout << "left out: " << dead_bytes << " dead bytes that updates had replaced\n";
 }
 

@@ -10,9 +10,11 @@
 
 #include "app_options.h"
 #include "common/stopwatch.h"
+#include "map/level_plan.h"
 #include "map/localization_map_file.h"
 #include "map/localization_map_writer.h"
 #include "process_cost.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/recording.h"
 #include "saw_ndt/localization/localizer.h"
 
@@ -32,12 +34,33 @@ constexpr char kDescription[] =
     "time of a first pose (the tiles included) and of later ones, waits, the greatest error, and the peak memory of a "
     "process that does all of it, with the file in the page cache and out of it. The file is removed in the end.";
 
+// After how many tiles voxels of every level begin where one does.
+int tilesOfWholeVoxels(const LocalizationMapFile& map) {
+  const saw_ndt::internal::TargetPlan plan = saw_ndt::internal::planTarget(map.origin(), map.weighting());
+  std::vector<double> resolutions_m;
+  for (const auto& level : plan.levels) resolutions_m.push_back(level.resolution_m);
+  if (plan.coarse) resolutions_m.push_back(plan.coarse->resolution_m);
+  const auto fits = [&](int tiles) {
+    return std::all_of(resolutions_m.begin(), resolutions_m.end(), [&](double resolution_m) {
+      const double voxels = tiles * kLocalizationTile_m / resolution_m;
+      return std::abs(voxels - std::round(voxels)) < 1e-9;
+    });
+  };
+  constexpr int kMost = 1000;
+  int tiles = 1;
+  while (!fits(tiles) && tiles < kMost) ++tiles;
+  if (!fits(tiles)) throw saw_ndt::Error(map.path(), "", "its voxels do not fit into tiles that can be repeated");
+  return tiles;
+}
+
 // The tiles of a map, side by side in squares of a chessboard.
 class City {
  public:
   City(const LocalizationMapFile& drive, std::uint64_t copies) : drive_(drive), copies_(copies) {
     const Eigen::Vector2d extent = (drive.greatest() - drive.least()) / kLocalizationTile_m;
-    step_ = extent.array().round().cast<int>();
+    // Copies lie whole voxels of every level apart.
+    const int multiple = tilesOfWholeVoxels(drive);
+    step_ = (extent / multiple).array().ceil().cast<int>() * multiple;
     columns_ = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(copies))));
   }
 
@@ -72,7 +95,7 @@ class City {
 
 struct Arguments {
   std::string map_file, sequence, folder, method = "weighted";
-  std::vector<double> streets_km{10.0};
+  std::vector<double> streets_km;
   double drive_km = 1.0;
   int places = 10, scans = 20;
 };
@@ -128,7 +151,7 @@ void measure(const Arguments& arguments, double km, int threads) {
   std::cerr << km << " km: written in " << writing.seconds << " s\n";
   for (const bool in_cache : {false, true}) {
     if (!in_cache) saw_ndt::leavePageCache(city_file);
-    std::cout << "| " << std::defaultfloat << km << (in_cache ? "" : ", file not in memory") << " | ";
+    std::cout << "| " << std::defaultfloat << std::setprecision(6) << km << (in_cache ? "" : ", file not in memory") << " | ";
     const saw_ndt::ProcessCost cost = saw_ndt::costOf([&] { localize(arguments, city, copies, city_file, threads); });
     std::cout << std::fixed << std::setprecision(0) << cost.peak_mb << " |\n" << std::flush;
   }
@@ -144,7 +167,8 @@ int main(int argc, char** argv) {
   app.addPositional("SEQUENCE", &arguments.sequence, "another drive of the place with its reference poses");
   app.addPositional("FOLDER", &arguments.folder, "folder for the cities");
   app.addOption("drive-km", &arguments.drive_km, "KM", "length of the streets in MAP (kilometres)");
-  app.addOption("km", &arguments.streets_km, "KM,KM,...", "lengths of the streets of cities (kilometres)");
+  app.addOption("km", &arguments.streets_km, "KM,KM,...",
+                "lengths of the streets of cities, 10,100,1000 where not stated (kilometres)");
   app.addOption("places", &arguments.places, "N", "in which is localized");
   app.addOption("scans", &arguments.scans, "N", "at each");
   app.addChoice("method", &arguments.method, saw_ndt::LocalizationMethod::names(), "that MAP was packed for");
@@ -152,6 +176,7 @@ int main(int argc, char** argv) {
     std::cout
         << "| km of streets | bytes | tiles | open ms | first pose ms | later ms, at most | waits | longest wait ms | "
            "accepted | greatest error m | peak MB |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+    if (arguments.streets_km.empty()) arguments.streets_km = {10.0, 100.0, 1000.0};
     for (const double km : arguments.streets_km) measure(arguments, km, app.threads());
   });
 }

@@ -32,7 +32,11 @@ ProcessCost costOf(const std::function<void()>& work) {
   rusage usage{};
   wait4(child, &status, 0, &usage);
   if (status != 0) throw Error("a measurement failed");
-  return {1e-3 * stopwatch.milliseconds(), static_cast<double>(usage.ru_maxrss) / 1024.0};
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return {1e-3 * stopwatch.milliseconds(), static_cast<double>(usage.ru_maxrss) / 1024.0,
+          seconds(usage.ru_utime) + seconds(usage.ru_stime)};
 }
 
 void leavePageCache(const std::string& path) {

@@ -8,7 +8,8 @@ namespace saw_ndt {
 /// What a piece of work took.
 struct ProcessCost {
   double seconds = 0.0;
-  double peak_mb = 0.0;  ///< of the process that did it
+  double peak_mb = 0.0;      ///< of the process that did it
+  double cpu_seconds = 0.0;  ///< of all of its threads: hardly more while others use the processor
 };
 
 /// Runs something in a process of its own. @throws Error where it fails; the reason is on stderr then

@@ -32,6 +32,8 @@ class SAW_NDT_EXPORT LocalizationMapFile {
   const std::string& path() const { return path_; }
   const MapOrigin& origin() const { return origin_; }
   const VoxelWeighting& weighting() const { return weighting_; }
+  /// Edges of the voxels of the levels that match, and of the coarse one where there is one (m).
+  const std::vector<double>& resolutions() const { return resolutions_m_; }
   std::uint64_t voxelCount() const { return voxel_count_; }
   std::uint64_t coarseVoxelCount() const { return coarse_voxel_count_; }
   std::size_t tileCount() const { return tile_count_; }

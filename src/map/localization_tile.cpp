@@ -68,6 +68,39 @@ std::vector<std::size_t> inBrickOrder(const std::vector<VoxelCoordinate>& voxels
   return order;
 }
 
+// Calls visit(level, voxel, cell) for the cells of a tile; false where the bytes are no such tile.
+template <typename Visit>
+bool visitCells(const char* bytes, std::size_t size, const TileCoordinate& at, const std::vector<double>& resolutions_m,
+                const Visit& visit) {
+  const std::size_t level_count = resolutions_m.size();
+  if (size < level_count * sizeof(LevelHead)) return false;
+  std::vector<LevelHead> heads(level_count);
+  std::memcpy(heads.data(), bytes, level_count * sizeof(LevelHead));
+  std::size_t cell_count = 0;
+  for (LevelHead& head : heads) {
+    head = inFileOrder(head);
+    cell_count += head.cell_count;
+  }
+  const char* next = bytes + level_count * sizeof(LevelHead);
+  if (size - level_count * sizeof(LevelHead) != cell_count * sizeof(QuantizedCell)) return false;
+  constexpr int kHighest = std::numeric_limits<std::int32_t>::max() - std::numeric_limits<std::uint16_t>::max();
+  for (std::size_t level = 0; level < level_count; ++level) {
+    const LevelHead& head = heads[level];
+    const int x = firstVoxelOf(at.x, resolutions_m[level]), y = firstVoxelOf(at.y, resolutions_m[level]);
+    const int x_count = firstVoxelOf(at.x + 1, resolutions_m[level]) - x;
+    const int y_count = firstVoxelOf(at.y + 1, resolutions_m[level]) - y;
+    if (head.least_z > kHighest) return false;
+    for (std::uint32_t i = 0; i < head.cell_count; ++i, next += sizeof(QuantizedCell)) {
+      QuantizedCell cell;
+      std::memcpy(&cell, next, sizeof cell);
+      reorder(cell);
+      if (!isValid(cell) || cell.place[0] >= x_count || cell.place[1] >= y_count) return false;
+      visit(level, VoxelCoordinate(x + cell.place[0], y + cell.place[1], head.least_z + cell.place[2]), cell);
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 TileCoordinate localizationTileOf(const VoxelCoordinate& voxel, double resolution_m) {
@@ -121,38 +154,22 @@ std::string encodedTile(const LocalizationTile& tile, const std::vector<double>&
 bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate& at,
                        const std::vector<double>& resolutions_m, const VoxelWeighting& weighting,
                        const LocalizationClip& clip, std::vector<NdtCells>& cells) {
-  const std::size_t level_count = resolutions_m.size();
-  if (size < level_count * sizeof(LevelHead)) return false;
-  std::vector<LevelHead> heads(level_count);
-  std::memcpy(heads.data(), bytes, level_count * sizeof(LevelHead));
-  std::size_t cell_count = 0;
-  for (LevelHead& head : heads) {
-    head = inFileOrder(head);
-    cell_count += head.cell_count;
-  }
-  const char* next = bytes + level_count * sizeof(LevelHead);
-  if (size - level_count * sizeof(LevelHead) != cell_count * sizeof(QuantizedCell)) return false;
-  for (std::size_t level = 0; level < level_count; ++level) {
-    const LevelHead& head = heads[level];
-    const double resolution_m = resolutions_m[level];
-    const int x = firstVoxelOf(at.x, resolution_m), y = firstVoxelOf(at.y, resolution_m);
-    const int x_count = firstVoxelOf(at.x + 1, resolution_m) - x, y_count = firstVoxelOf(at.y + 1, resolution_m) - y;
-    if (head.least_z > std::numeric_limits<std::int32_t>::max() - std::numeric_limits<std::uint16_t>::max())
-      return false;
-    NdtCells& of_level = cells[level];
-    for (std::uint32_t i = 0; i < head.cell_count; ++i, next += sizeof(QuantizedCell)) {
-      QuantizedCell cell;
-      std::memcpy(&cell, next, sizeof cell);
-      reorder(cell);
-      if (!isValid(cell) || cell.place[0] >= x_count || cell.place[1] >= y_count) return false;
-      const Eigen::Vector2d middle_m((x + cell.place[0] + 0.5) * resolution_m,
-                                     (y + cell.place[1] + 0.5) * resolution_m);
-      if ((middle_m - clip.centre_m).squaredNorm() > clip.radius_m * clip.radius_m) continue;
-      of_level.voxels.emplace_back(x + cell.place[0], y + cell.place[1], head.least_z + cell.place[2]);
-      of_level.packed.push_back(dequantized(cell, resolution_m, weighting));
-    }
-  }
-  return true;
+  const double squared_radius = clip.radius_m * clip.radius_m;
+  return visitCells(bytes, size, at, resolutions_m,
+                    [&](std::size_t level, const VoxelCoordinate& voxel, const QuantizedCell& cell) {
+                      const double resolution_m = resolutions_m[level];
+                      const Eigen::Vector2d middle_m = (voxel.head<2>().cast<double>().array() + 0.5) * resolution_m;
+                      if ((middle_m - clip.centre_m).squaredNorm() > squared_radius) return;
+                      cells[level].voxels.push_back(voxel);
+                      cells[level].packed.push_back(dequantized(cell, resolution_m, weighting));
+                    });
+}
+
+bool forEachCell(const char* bytes, std::size_t size, const TileCoordinate& at,
+                 const std::vector<double>& resolutions_m,
+                 const std::function<void(std::size_t level, const QuantizedCell& cell)>& visit) {
+  return visitCells(bytes, size, at, resolutions_m,
+                    [&](std::size_t level, const VoxelCoordinate&, const QuantizedCell& cell) { visit(level, cell); });
 }
 
 }  // namespace saw_ndt::internal

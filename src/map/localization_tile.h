@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "map/ndt_level.h"
 #include "map/quantized_cell.h"
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/map/voxel_statistics.h"
 
 namespace saw_ndt::internal {
@@ -68,5 +70,10 @@ std::string encodedTile(const LocalizationTile& tile, const std::vector<double>&
 bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate& at,
                        const std::vector<double>& resolutions_m, const VoxelWeighting& weighting,
                        const LocalizationClip& clip, std::vector<NdtCells>& cells);
+
+/// Calls visit(level, cell) for each cell of such a tile, level after level. @return false as above
+SAW_NDT_EXPORT bool forEachCell(const char* bytes, std::size_t size, const TileCoordinate& at,
+                                const std::vector<double>& resolutions_m,
+                                const std::function<void(std::size_t level, const QuantizedCell& cell)>& visit);
 
 }  // namespace saw_ndt::internal

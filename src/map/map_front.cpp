@@ -88,7 +88,7 @@ void MapFront::readHeader() {
   std::memcpy(&header, at(0, sizeof header), sizeof header);
   // An update may be replacing it in this moment.
   for (int attempt = 1; attempt < kMostAttempts && !checksumHolds(header); ++attempt) {
-    std::this_thread::yield();
+    if (attempt + 2 >= kMostAttempts) std::this_thread::yield();
     std::memcpy(&header, at(0, sizeof header), sizeof header);
   }
   if (!checksumHolds(header)) {

@@ -45,7 +45,6 @@ class TileMerge {
   /// What the merged map is made of.
   const MapOrigin& origin() const { return origin_; }
   const MapFileReader& file(std::size_t file) const { return *files_[file]; }
-  std::size_t fileCount() const { return files_.size(); }
   /// Whether any file but the first one holds something.
   bool othersHold() const { return others_hold_; }
 

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "common/atomic_output.h"
+#include "io/staged_output.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -21,7 +22,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kFont[] = "DejaVu Sans,11";
-constexpr double kPngScale = 1.5;  // sharp on dense displays
 
 std::string inSingleQuotes(const std::string& text, const std::string& quote_within) {
   std::string result = "'";
@@ -78,6 +78,14 @@ void drawPicture(const GnuplotPicture& picture, const fs::path& folder) {
   const int exit_code = bp::system(bp::search_path("gnuplot"), script_file.string(),
                                    bp::std_in<bp::null, bp::std_out> bp::null, bp::std_err > message_file.string());
   if (exit_code != 0) throw Error("gnuplot", picture.name, firstLineOf(message_file));
+}
+
+void drawPng(GnuplotPicture picture, const fs::path& file) {
+  const StagedOutput output(file.has_parent_path() ? file.parent_path() : fs::path("."));
+  picture.name = file.stem().string();
+  picture.many_points = true;
+  drawPicture(picture, output.folder());
+  output.commit();
 }
 
 std::string gnuplotQuoted(const std::string& text) {

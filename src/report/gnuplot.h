@@ -9,6 +9,9 @@ namespace saw_ndt {
 /// Whether the program gnuplot is found.
 bool gnuplotFound();
 
+/// Picture elements of a PNG file for one of GnuplotPicture's: sharp on dense displays.
+constexpr double kPngScale = 1.5;
+
 /// A picture in gnuplot's words.
 struct GnuplotPicture {
   std::string name;  ///< of its files, without an ending
@@ -23,6 +26,11 @@ struct GnuplotPicture {
 /// Draws the picture into `folder/name.png` and, unless it has many points, `folder/name.svg`.
 /// @throws Error with gnuplot's message
 void drawPicture(const GnuplotPicture& picture, const std::filesystem::path& folder);
+
+/// Draws the picture into a PNG file, whole or not at all, whatever its name.
+/// @param file  ends in .png
+/// @throws Error with gnuplot's message, or where the file cannot be written
+void drawPng(GnuplotPicture picture, const std::filesystem::path& file);
 
 /// A text as gnuplot takes it: in the quotes within which nothing has a meaning, line breaks as spaces.
 std::string gnuplotQuoted(const std::string& text);

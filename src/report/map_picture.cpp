@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "report/map_axes.h"
 #include "report/method_colour.h"
 #include "saw_ndt/common/labels.h"
 
@@ -13,19 +14,12 @@ namespace {
 
 constexpr double kMargin_m = 30.0;  // of the map shown around the drive
 constexpr double kMarkDistance_px = 12.0;
-constexpr double kLineStep_px = 1.7;  // between the widths of lines that may lie on each other
-constexpr double kMaxWidth_px = 920.0, kMaxHeight_px = 900.0, kMinHeight_px = 330.0;
-constexpr double kLeft_px = 100.0, kLegend_px = 215.0, kTop_px = 45.0, kBottom_px = 60.0;
+constexpr double kLineStep_px = 1.7;   // between the widths of lines that may lie on each other
 constexpr double kPointSize_px = 7.0;  // of gnuplot's point size 1
 
-struct Window {
-  double x_min, x_max, y_min, y_max;
-  bool contains(double x, double y) const { return x >= x_min && x <= x_max && y >= y_min && y <= y_max; }
-};
-
-Window windowAround(const BenchmarkRun& run) {
+MapWindow windowAround(const BenchmarkRun& run) {
   const Eigen::Vector3d first = run.T_map_base.front().translation();
-  Window window{first.x(), first.x(), first.y(), first.y()};
+  MapWindow window{first.x(), first.x(), first.y(), first.y()};
   for (const Eigen::Isometry3d& T : run.T_map_base) {
     window.x_min = std::min(window.x_min, T.translation().x());
     window.x_max = std::max(window.x_max, T.translation().x());
@@ -37,7 +31,7 @@ Window windowAround(const BenchmarkRun& run) {
 
 using Columns = std::vector<std::vector<double>>;
 
-Columns voxelsOf(const BenchmarkRun& run, const Window& window, bool ground) {
+Columns voxelsOf(const BenchmarkRun& run, const MapWindow& window, bool ground) {
   Columns columns(2);
   for (const VoxelPoint& voxel : run.voxels) {
     if ((voxel.label == static_cast<std::uint32_t>(StructuralLabel::GROUND)) != ground) continue;
@@ -88,36 +82,20 @@ Columns orNothing(Columns columns) {
 }  // namespace
 
 GnuplotPicture mapPicture(const BenchmarkRun& run) {
-  const Window window = windowAround(run);
-  const double width_m = window.x_max - window.x_min, height_m = window.y_max - window.y_min;
-  const double scale_px = std::min(kMaxWidth_px / width_m, kMaxHeight_px / height_m);
-  const double map_height_px = std::max(kMinHeight_px, height_m * scale_px);
+  const MapAxes axes(windowAround(run));
+  const MapWindow& window = axes.window();
+  const double scale_px = axes.scale_px();
   GnuplotPicture picture;
   picture.name = "map";
   picture.many_points = true;
-  picture.width_px = static_cast<int>(kLeft_px + width_m * scale_px + kLegend_px);
-  picture.height_px = static_cast<int>(kTop_px + map_height_px + kBottom_px);
-
-  const auto screen_x = [&](double px) { return px / picture.width_px; };
-  const auto screen_y = [&](double px) { return px / picture.height_px; };
   picture.data = gnuplotData("$ground", orNothing(voxelsOf(run, window, true))) +
                  gnuplotData("$structure", orNothing(voxelsOf(run, window, false))) +
                  gnuplotData("$rejected", orNothing(rejectedPositions(run, kMarkDistance_px / scale_px))) +
                  gnuplotData("$reference", positions(run.T_map_base.size(),
                                                      [&](std::size_t i) { return run.T_map_base[i].translation(); }));
   std::ostringstream draw;
-  draw << "set lmargin at screen " << screen_x(kLeft_px) << "\nset rmargin at screen "
-       << screen_x(kLeft_px + width_m * scale_px) << "\nset bmargin at screen " << screen_y(kBottom_px)
-       << "\nset tmargin at screen " << screen_y(kBottom_px + map_height_px) << "\nset size ratio -1\nset xrange ["
-       << window.x_min << ':' << window.x_max << "]\nset yrange [" << window.y_min << ':' << window.y_max
-       << "]\nset tics out nomirror\nset border lc rgb '#555555'\nset xlabel 'x in the map (m)'\n"
-          "set ylabel 'y in the map (m)'\nset title "
-       << gnuplotQuoted(run.sequence + ", " + toString(run.drive) + ": the map from above and the trajectories")
-       << "\nset key at screen " << screen_x(kLeft_px + width_m * scale_px + 15.0) << ", screen "
-       << screen_y(kBottom_px + map_height_px)
-       << " left top Left reverse samplen 2 spacing 1.3 width -2\nset label 1 'start' at "
-       << run.T_map_base.front().translation().x() << ',' << run.T_map_base.front().translation().y()
-       << " offset 0.6,-1.1 front\n";
+  draw << "set label 1 'start' at " << run.T_map_base.front().translation().x() << ','
+       << run.T_map_base.front().translation().y() << " offset 0.6,-1.1 front\n";
   const double point_size = std::clamp(0.7 * scale_px / kPointSize_px, 0.12, 0.8);
   draw << "plot $ground with points pt 7 ps " << point_size << " lc rgb '#e6d9b8' notitle, "
        << "$structure with points pt 7 ps " << point_size << " lc rgb '#a9b2bd' notitle, "
@@ -138,6 +116,7 @@ GnuplotPicture mapPicture(const BenchmarkRun& run) {
   draw << "$reference every ::0::0 with points pt 7 ps 1.4 lc rgb '#000000' notitle, "
        << "$rejected with points pt 2 ps 1.3 lw 1.5 lc rgb '#000000' title 'rejected scan'\n";
   picture.commands = draw.str();
+  axes.begin(picture, run.sequence + ", " + toString(run.drive) + ": the map from above and the trajectories");
   picture.caption =
       "The map (the mean of each voxel, from above) with the reference and what each method said. Lines that agree "
       "lie on each other, the reference widest. Crosses are scans that a method rejected (one of many where they are "

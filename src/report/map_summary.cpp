@@ -1,13 +1,14 @@
 #include "report/map_summary.h"
 
 #include <algorithm>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <type_traits>
+#include <utility>
 
+#include "common/middle_value.h"
+#include "map/map_tile.h"
+#include "report/figure_lines.h"
+#include "report/map_figures.h"
 #include "saw_ndt/map/ndt_target.h"
-#include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
 
@@ -30,6 +31,35 @@ VoxelFigure figureOf(const std::vector<VoxelStatistics>& voxels, Value value) {
   return figure;
 }
 
+// How many columns of voxels hold points.
+std::size_t columnCount(const std::vector<LabelledVoxelSums>& entries) {
+  std::vector<std::pair<int, int>> columns;
+  for (const LabelledVoxelSums& entry : entries) {
+    const std::pair column(entry.voxel.x(), entry.voxel.y());
+    if (columns.empty() || columns.back() != column) columns.push_back(column);
+  }
+  std::sort(columns.begin(), columns.end());
+  return static_cast<std::size_t>(std::unique(columns.begin(), columns.end()) - columns.begin());
+}
+
+// Of entries in map order, one or more.
+void measureTiles(const std::vector<LabelledVoxelSums>& entries, MapSummary& summary) {
+  std::vector<std::size_t> sizes;
+  Eigen::Vector3i before = tileOf(entries.front().voxel);
+  sizes.push_back(0);
+  for (const LabelledVoxelSums& entry : entries) {
+    const Eigen::Vector3i tile = tileOf(entry.voxel);
+    if (tile != before) sizes.push_back(0);
+    before = tile;
+    ++sizes.back();
+  }
+  summary.tiles = sizes.size();
+  const auto [least, greatest] = std::minmax_element(sizes.begin(), sizes.end());
+  summary.tile_entries.min = *least;
+  summary.tile_entries.max = *greatest;
+  summary.tile_entries.median = middleValue(sizes);
+}
+
 void measureEntries(const WeightedVoxelMap& map, MapSummary& summary) {
   if (map.entries().empty()) return;
   VoxelCoordinate lowest = map.entries().front().voxel, highest = lowest;
@@ -38,67 +68,46 @@ void measureEntries(const WeightedVoxelMap& map, MapSummary& summary) {
     highest = highest.cwiseMax(entry.voxel);
     summary.label_points[static_cast<std::size_t>(entry.label)] += entry.sums.count;
   }
+  measureTiles(map.entries(), summary);
+  summary.area_m2 = static_cast<double>(columnCount(map.entries())) * map.resolution() * map.resolution();
   summary.box_min_m = lowest.cast<double>() * map.resolution();
   summary.box_max_m = (highest.cast<double>().array() + 1.0).matrix() * map.resolution();
 }
 
-Json toJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 Json toJson(const VoxelFigure& figure) { return {{"mean", figure.mean}, {"min", figure.min}, {"max", figure.max}}; }
 
-// {"<name>": count, ..., "<name>_share": ...}
-template <typename Count>
-Json withShares(const std::array<const char*, 3>& names, const std::array<Count, 3>& counts) {
-  Json counted, shares;
-  double total = 0.0;
-  for (const Count count : counts) total += static_cast<double>(count);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    counted[names[i]] = counts[i];
-    shares[std::string(names[i]) + "_share"] = total > 0.0 ? static_cast<double>(counts[i]) / total : 0.0;
-  }
-  counted.update(shares);
-  return counted;
-}
-
-constexpr char kNotKnown[] = "not known";
-
-// {"sensor.name": ..., "sensor.columns": ..., ...}
-Json toJson(const SegmentationOptions& options) {
-  Json json;
-  internal::forEachField(options, [&json](const char* name, const auto& value) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, GroundRule>) {
-      json[name] = toString(value);
-    } else {
-      json[name] = value;
-    }
-  });
-  return json;
+Json bytesOf(std::uint64_t file_bytes, const MapSummary& summary) {
+  const auto each = [file_bytes](std::size_t count) {
+    return count == 0 ? 0.0 : static_cast<double>(file_bytes) / static_cast<double>(count);
+  };
+  return {{"file", file_bytes}, {"per_entry", each(summary.entries)}, {"per_voxel", each(summary.voxels)}};
 }
 
 Json toJson(const MapSummary& summary) {
   Json json{{"resolution_m", summary.resolution_m},
             {"coarse_resolution_m", summary.coarse_resolution_m},
             {"labelled", summary.labelled},
-            {"software_version", summary.software_version.empty() ? kNotKnown : summary.software_version},
+            {"software_version", orNotKnown(summary.software_version)},
             {"scans", summary.scans},
             {"points", summary.points},
             {"entries", summary.entries},
             {"voxels", summary.voxels},
             {"coarse_voxels", summary.coarse_voxels},
-            {"box_min_m", toJson(summary.box_min_m)},
-            {"box_max_m", toJson(summary.box_max_m)}};
-  if (!summary.map_origin_m.isZero(0.0)) json["map_origin_m"] = toJson(summary.map_origin_m);
+            {"box_min_m", vectorFigures(summary.box_min_m)},
+            {"box_max_m", vectorFigures(summary.box_max_m)},
+            {"extent_m", vectorFigures(summary.box_max_m - summary.box_min_m)},
+            {"area_m2", summary.area_m2},
+            {"tiles", summary.tiles},
+            {"tile_entries", toJson(summary.tile_entries)}};
+  if (summary.file_bytes) json["bytes"] = bytesOf(*summary.file_bytes, summary);
+  if (!summary.map_origin_m.isZero(0.0)) json["map_origin_m"] = vectorFigures(summary.map_origin_m);
   if (summary.dead_bytes != 0) json["dead_bytes"] = summary.dead_bytes;
   if (summary.labelled) json["label_points"] = withShares({"noise", "ground", "non_ground"}, summary.label_points);
-  json["class_voxels"] = withShares({"linear", "planar", "volumetric"}, summary.class_voxels);
-  if (summary.labelled) json["segmentation"] = summary.segmentation ? toJson(*summary.segmentation) : Json(kNotKnown);
+  json["class_voxels"] = classFigures(summary.class_voxels);
+  if (summary.labelled) json["segmentation"] = segmentationFigures(summary.segmentation);
   json["mean_confidence"] = toJson(summary.mean_confidence);
   json["weight"] = toJson(summary.weight);
   return json;
-}
-
-void writeLine(std::ostringstream& text, const std::string& name, const Json& value) {
-  text << std::left << std::setw(29) << name << ' ' << value.dump() << '\n';
 }
 
 }  // namespace
@@ -126,18 +135,7 @@ MapSummary summarize(const WeightedVoxelMap& map, const VoxelWeighting& weightin
   return summary;
 }
 
-std::string toText(const MapSummary& summary) {
-  std::ostringstream text;
-  const Json json = toJson(summary);
-  for (const auto& [name, value] : json.items()) {
-    if (!value.is_object()) {
-      writeLine(text, name, value);
-      continue;
-    }
-    for (const auto& [part, part_value] : value.items()) writeLine(text, name + "." + part, part_value);
-  }
-  return text.str();
-}
+std::string toText(const MapSummary& summary) { return figureLines(toJson(summary)); }
 
 std::string toJsonText(const MapSummary& summary) { return toJson(summary).dump(2) + "\n"; }
 

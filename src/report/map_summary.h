@@ -18,6 +18,13 @@ struct VoxelFigure {
   double max = 0.0;
 };
 
+/// How many entries tiles have; 0 where there is no tile.
+struct TileEntries {
+  std::size_t min = 0;
+  std::size_t median = 0;  ///< of an even number of tiles the upper of the two in the middle
+  std::size_t max = 0;
+};
+
 /// What a map holds.
 struct MapSummary {
   double resolution_m = 0.0;         ///< edge of a fine voxel
@@ -34,10 +41,14 @@ struct MapSummary {
   std::size_t coarse_voxels = 0;                        ///< coarse voxels with a distribution
   Eigen::Vector3d box_min_m = Eigen::Vector3d::Zero();  ///< lower corner of the voxels that hold points, map frame
   Eigen::Vector3d box_max_m = Eigen::Vector3d::Zero();  ///< upper corner of them
-  std::array<std::uint64_t, 3> label_points{};          ///< points by StructuralLabel; all non-ground if not labelled
-  std::array<std::size_t, 3> class_voxels{};            ///< fine voxels: linear, planar, volumetric
-  VoxelFigure mean_confidence;                          ///< over the fine voxels
-  VoxelFigure weight;                                   ///< over the fine voxels
+  double area_m2 = 0.0;   ///< covered, seen from above: columns of voxels that hold points
+  std::size_t tiles = 0;  ///< with entries
+  TileEntries tile_entries;
+  std::optional<std::uint64_t> file_bytes;      ///< size of the map's file; summarize() does not know it
+  std::array<std::uint64_t, 3> label_points{};  ///< points by StructuralLabel; all non-ground if not labelled
+  std::array<std::size_t, 3> class_voxels{};    ///< fine voxels: linear, planar, volumetric
+  VoxelFigure mean_confidence;                  ///< over the fine voxels
+  VoxelFigure weight;                           ///< over the fine voxels
 };
 
 /// @param weighting  by which voxels get their confidences and weights, and which have a distribution at all

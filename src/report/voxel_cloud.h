@@ -5,6 +5,7 @@
 #include <pcl/register_point_struct.h>
 
 #include <cstdint>
+#include <vector>
 
 #include "saw_ndt/map/weighted_voxel_map.h"
 
@@ -19,6 +20,11 @@ struct EIGEN_ALIGN16 VoxelPoint {
   float weight = 0.0F;           ///< w_target of the paper
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
+
+/// For each of the voxels of map.statistics() the label that most of its points carry, the greater one of two as
+/// frequent; labels of confidence 0 do not count.
+std::vector<StructuralLabel> voxelLabels(const WeightedVoxelMap& map, const std::vector<VoxelStatistics>& voxels,
+                                         const ConfidenceOptions& confidence);
 
 /// The voxels that have a distribution with a weighting, in map order. Coordinates are single precision: far
 /// from the map's origin they are rounded, to 0.25 m at 4,000 km.

@@ -2,10 +2,13 @@
 #include <pcl/common/io.h>
 #include <pcl/io/pcd_io.h>
 
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "map/map_fixtures.h"
 #include "real_data.h"
+#include "report/gnuplot.h"
 #include "report/voxel_cloud.h"
 #include "run_app_program.h"
 #include "saw_ndt/drives/drive_map.h"
@@ -56,6 +59,10 @@ TEST_F(MapInfoApp, TellsWhatAMapHolds) {
   EXPECT_EQ(json.at("voxels"), map.voxelCount());
   EXPECT_EQ(json.at("coarse_voxels"), NdtTarget(map).coarseVoxelCount());
   EXPECT_EQ(json.at("entries"), map.entries().size());
+  const auto file_bytes = std::filesystem::file_size(path("a.map"));
+  EXPECT_EQ(json.at("bytes").at("file"), file_bytes);
+  EXPECT_DOUBLE_EQ(json.at("bytes").at("per_voxel").get<double>(),
+                   static_cast<double>(file_bytes) / static_cast<double>(map.voxelCount()));
   EXPECT_EQ(json_run.output.find(folder.path().string()), std::string::npos);
   expectVoxels(path("a.pcd"), map);
   EXPECT_EQ(readPointCloud<pcl::PointXYZL>(path("a.pcd")).size(), map.voxelCount());
@@ -63,6 +70,27 @@ TEST_F(MapInfoApp, TellsWhatAMapHolds) {
   const AppResult text_run = run("'" + path("a.map") + "'");
   ASSERT_EQ(text_run.exit_code, 0) << text_run.errors;
   EXPECT_NE(text_run.output.find("points                        5000\n"), std::string::npos) << text_run.output;
+}
+
+TEST_F(MapInfoApp, DrawsTheMap) {
+  if (!gnuplotFound()) GTEST_SKIP() << "gnuplot is not installed";
+  mapOf(mixedCloud(1, 20000)).save(path("a.map"));
+  mapOf(withoutLabels(mixedCloud(1, 20000))).save(path("plain.map"));
+  std::map<std::string, std::string> pictures;
+  for (const std::string colour : {"auto", "label", "class", "weight", "height"}) {
+    const AppResult result = run("'" + path("a.map") + "' -picture '" + path(colour + ".png") + "' -colour " + colour);
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    pictures[colour] = contentOf(path(colour + ".png"));
+    EXPECT_EQ(pictures[colour].substr(1, 3), "PNG");
+  }
+  EXPECT_EQ(pictures.at("auto"), pictures.at("label"));
+  for (const std::string colour : {"class", "weight", "height"}) EXPECT_NE(pictures.at(colour), pictures.at("label"));
+  ASSERT_EQ(run("'" + path("plain.map") + "' -picture '" + path("plain.png") + "'").exit_code, 0);
+  const AppResult no_labels = run("'" + path("plain.map") + "' -picture '" + path("no.png") + "' -colour label");
+  EXPECT_EQ(no_labels.exit_code, 1);
+  EXPECT_NE(no_labels.errors.find("plain.map: has no labels"), std::string::npos) << no_labels.errors;
+  // Two maps and six pictures.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 8);
 }
 
 TEST_F(MapInfoApp, SaysWhatIsWrong) {
@@ -82,6 +110,9 @@ TEST_F(MapInfoApp, SaysWhatIsWrong) {
       {"'" + path("bad.map") + "'", 1, "bad.map: offset"},
       {"'" + path("bad.map") + "' -pcd '" + path("out.pcd") + "'", 1, "bad.map: offset"},
       {"'" + path("a.map") + "' -pcd '" + path("none/out.pcd") + "'", 1, "none/out.pcd: No such file"},
+      {"'" + path("a.map") + "' -picture '" + path("out.jpg") + "'", 2, "must end in .png"},
+      {"'" + path("a.map") + "' -picture '" + path("none/out.png") + "'", 1, "none/out.png: No such file"},
+      {"'" + path("a.map") + "' -colour label", 2, "-colour goes with -picture"},
       {"'" + path("empty.map") + "' -pcd '" + path("out.pcd") + "'", 1, "out.pcd: a cloud without points"},
   };
   for (const auto& c : cases) {

@@ -46,8 +46,28 @@ TEST_F(MapPackApp, ServesTheMethodsWhoseVoxelsAreAlike) {
       quoted(drive_folder) + path("paper.map") + path("out") + kSensor + "-skip 0 -method weighted-s100");
   expectFails(SAW_NDT_LOCALIZE_APP, quoted(drive_folder) + path("paper.map") + path("other") + kSensor, 1,
               {"paper.map", "was packed for other voxels"});
-  expectFails(SAW_NDT_LOCALIZE_APP, quoted(drive_folder) + path("paper.map") + path("other") + kSensor + "-map-radius 0", 2,
-              {"radius_m"});
+  expectFails(SAW_NDT_LOCALIZE_APP,
+              quoted(drive_folder) + path("paper.map") + path("other") + kSensor + "-map-radius 0", 2, {"radius_m"});
+}
+
+TEST_F(MapPackApp, IsToldBySawNdtMapInfo) {
+  buildMap();
+  run(SAW_NDT_APP, path("statistics.map") + path("packed.map") + "-method weighted-s50");
+  const LocalizationMap map((folder.path() / "packed.map").string());
+  const auto told = nlohmann::json::parse(run(SAW_NDT_MAP_INFO_APP, path("packed.map") + "-json").output);
+  EXPECT_EQ(told["kind"], "localization map");
+  EXPECT_EQ(told["methods"], nlohmann::json({"weighted-s50", "weighted-s100", "unweighted-s50"}));
+  EXPECT_EQ(told["resolutions_m"], nlohmann::json({1.0}));
+  EXPECT_EQ(told["coarse_resolution_m"], 3.0);
+  EXPECT_EQ(told["voxels"], map.voxelCount());
+  EXPECT_EQ(told["coarse_voxels"], map.coarseVoxelCount());
+  EXPECT_EQ(told["tiles"], map.tileCount());
+  EXPECT_EQ(told["bytes"]["file"], map.fileSize());
+  const auto& classes = told["class_voxels"];
+  EXPECT_EQ(classes["linear"].get<std::size_t>() + classes["planar"].get<std::size_t>() +
+                classes["volumetric"].get<std::size_t>(),
+            map.voxelCount());
+  expectFails(SAW_NDT_MAP_INFO_APP, path("packed.map") + "-pcd " + path("voxels.pcd"), 1, {"packed.map", "-pcd"});
 }
 
 TEST_F(MapPackApp, RefusesWhatIsNoStatisticsMap) {

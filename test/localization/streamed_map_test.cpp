@@ -1,47 +1,29 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "localization/scans_in_memory.h"
-#include "localization/synthetic_drive.h"
+#include "localization/simulated_scans.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/localization/map_pack.h"
-#include "simulation/lidar_simulator.h"
-#include "simulation/short_drive.h"
 #include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {
-
-/// Every `step`-th scan of a simulated drive through a suburb.
-SyntheticDrive driveSuburb(int number, int scans, int step) {
-  DriveOptions options;
-  options.drive = number;
-  const SimulatedDrive simulated = shortDrive("residential", options, scans);
-  LidarOptions lidar;
-  lidar.seed = static_cast<std::uint64_t>(number);
-  LidarSimulator simulator(simulated.scene, lidar);
-  SyntheticDrive drive;
-  for (int scan = 0; scan < scans; scan += step) {
-    drive.stamps_s.push_back(simulated.motion->stamps_s[static_cast<std::size_t>(scan)]);
-    drive.T_map_lidar.push_back(simulated.motion->T_scene_lidar[static_cast<std::size_t>(scan)]);
-    drive.scans.push_back(simulator.scan(*simulated.motion, scan).points);
-  }
-  return drive;
-}
 
 /// A map of some hundred metres of road and another drive along it.
 class StreamedMap : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder = new TemporaryFolder();
-    ScansInMemory scans(driveSuburb(1, 200, 4));
+    ScansInMemory scans(simulatedScans("residential", 1, 0, 200, 4));
     const std::string statistics_file = (folder->path() / "statistics.map").string();
     buildDriveMap(scans, {}).build().save(statistics_file);
     packMap(statistics_file, mapFile(), LocalizationMethod::named("weighted").voxels);
-    drive = new SyntheticDrive(driveSuburb(2, 180, 4));
+    drive = new SyntheticDrive(simulatedScans("residential", 2, 0, 180, 4));
   }
   static void TearDownTestSuite() {
     delete drive;
@@ -93,6 +75,27 @@ TEST_F(StreamedMap, GivesTheSameBitsAsTheWholeMap) {
   EXPECT_GE(streamed.tileLoads()->loads, 3U);
   EXPECT_EQ(streamed.tileLoads()->least_radius_m, 0.0);
   EXPECT_EQ(whole.tileLoads()->loads, 1U);
+}
+
+// Each has tiles of its own, and all the same file.
+TEST_F(StreamedMap, ServesLocalizersSideBySide) {
+  const LocalizationMap map(mapFile());
+  std::vector<std::vector<LocalizationResult>> results(3);
+  std::vector<std::thread> threads;
+  for (std::vector<LocalizationResult>& of_thread : results) {
+    threads.emplace_back([&of_thread, map] {
+      LocalizerOptions with = options();
+      with.alignment.threads = 1;
+      Localizer localizer(TiledTarget(map, with.tiles), with);
+      localizer.setInitialPose(drive->T_map_lidar.front());
+      of_thread = follow(localizer);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t i = 0; i < drive->scans.size(); ++i) {
+    EXPECT_EQ(results[1][i].T_map_base.matrix(), results[0][i].T_map_base.matrix());
+    EXPECT_EQ(results[2][i].T_map_base.matrix(), results[0][i].T_map_base.matrix());
+  }
 }
 
 TEST_F(StreamedMap, IsSearchedWhereTheStartIsUnknown) {

@@ -3,38 +3,18 @@
 #include <cmath>
 
 #include "localization/scans_in_memory.h"
-#include "localization/synthetic_drive.h"
+#include "localization/simulated_scans.h"
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/localization/localizer.h"
-#include "simulation/lidar_simulator.h"
-#include "simulation/short_drive.h"
 
 namespace saw_ndt {
 namespace {
 
-/// Scans `first` to `last` of a drive along a simulated motorway. Drives differ in traffic and the way within the lane;
-/// their map frame is that of the scene.
-SyntheticDrive driveHighway(int number, int first, int last) {
-  DriveOptions options;
-  options.drive = number;
-  const SimulatedDrive simulated = shortDrive("highway", options, last);
-  LidarOptions lidar;
-  lidar.seed = static_cast<std::uint64_t>(number);
-  LidarSimulator simulator(simulated.scene, lidar);
-  SyntheticDrive drive;
-  for (int scan = first; scan < last; ++scan) {
-    drive.stamps_s.push_back(simulated.motion->stamps_s[static_cast<std::size_t>(scan)]);
-    drive.T_map_lidar.push_back(simulated.motion->T_scene_lidar[static_cast<std::size_t>(scan)]);
-    drive.scans.push_back(simulator.scan(*simulated.motion, scan).points);
-  }
-  return drive;
-}
-
 // Guard rails, sound walls and the verge are parallel to the road: much of a scan fits metres behind and ahead as well.
 TEST(WrongStart, AlongAMotorwayIsCorrectedOrRejectedUntilThePoseIsFound) {
-  ScansInMemory map_scans(driveHighway(1, 0, 70));
+  ScansInMemory map_scans(simulatedScans("highway", 1, 0, 70));
   const WeightedVoxelMap map = buildDriveMap(map_scans, {}).build();
-  const SyntheticDrive drive = driveHighway(2, 30, 45);
+  const SyntheticDrive drive = simulatedScans("highway", 2, 30, 45);
   for (const std::string method : {"weighted", "classical"}) {
     LocalizerOptions options;
     options.method = LocalizationMethod::named(method);

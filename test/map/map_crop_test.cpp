@@ -221,7 +221,7 @@ TEST(MapCrop, OfAFileReadsOnlyTheTilesThatCanMeetTheRegion) {
   damaged[damaged.size() - 3] = static_cast<char>(damaged[damaged.size() - 3] ^ 4);  // of the last tile
   folder.write("town.map", damaged);
   expectThrows<Error>([&] { WeightedVoxelMap::load(file); }, {"town.map: offset ", "checksum of a tile"});
-  const MapRegion low = boxRegion({-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, 0.4});
+  const MapRegion low = boxRegion({-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, -0.4});
   EXPECT_EQ(WeightedVoxelMap::load(file, low).entries().size(), cropMap(map, low).entries().size());
   cropMapFile(file, low, part);
   const MapRegion high = boxRegion({-kInfinity, -kInfinity, 0.0}, {kInfinity, kInfinity, kInfinity});

@@ -47,6 +47,13 @@ TEST(MapSummary, CountsByHand) {
   EXPECT_EQ(summary.coarse_voxels, 2U);
   EXPECT_EQ(summary.box_min_m, Eigen::Vector3d(-2.0, -1.0, 0.0));
   EXPECT_EQ(summary.box_max_m, Eigen::Vector3d(5.5, 0.5, 2.0));
+  // Three columns of voxels, each in a tile of its own: x < 0, y < 0 and neither; one voxel has two labels.
+  EXPECT_EQ(summary.area_m2, 0.75);
+  EXPECT_EQ(summary.tiles, 3U);
+  EXPECT_EQ(summary.tile_entries.min, 1U);
+  EXPECT_EQ(summary.tile_entries.median, 1U);
+  EXPECT_EQ(summary.tile_entries.max, 2U);
+  EXPECT_FALSE(summary.file_bytes);
   EXPECT_EQ(summary.label_points, (std::array<std::uint64_t, 3>{6, 6, 3}));
   EXPECT_EQ(summary.class_voxels, (std::array<std::size_t, 3>{1, 1, 0}));
   // Plane: (6 * 0.65 + 2 * 1) / 8 = 0.7375, times 1.25. Line: 0.85, times 0.75.
@@ -58,9 +65,33 @@ TEST(MapSummary, CountsByHand) {
   EXPECT_DOUBLE_EQ(summary.weight.mean, 0.7796875);
 }
 
+TEST(MapSummary, VoxelsAboveEachOtherCoverTheirAreaOnce) {
+  LabelledCloud cloud;
+  for (int i = 0; i < 300; ++i) {
+    addPoint(cloud, 0.1F + static_cast<float>(i % 3), 0.5F, 0.5F * static_cast<float>(i) + 0.2F, 2);
+  }
+  WeightedMapBuilder builder(0.5);
+  addCloud(builder, cloud, Eigen::Isometry3d::Identity());
+  const MapSummary summary = summarize(builder.build());
+  EXPECT_EQ(summary.area_m2, 3 * 0.25);
+  // 300 layers in tiles of 64.
+  EXPECT_EQ(summary.tiles, 5U);
+  EXPECT_EQ(summary.tile_entries.min, 300U - 4U * 64U);
+  EXPECT_EQ(summary.tile_entries.median, 64U);
+  EXPECT_EQ(summary.tile_entries.max, 64U);
+}
+
 TEST(MapSummary, AsJsonAndAsText) {
-  const MapSummary summary = summarize(threeVoxels());
+  MapSummary summary = summarize(threeVoxels());
+  EXPECT_FALSE(nlohmann::json::parse(toJsonText(summary)).contains("bytes"));
+  summary.file_bytes = 1000;
   const auto json = nlohmann::json::parse(toJsonText(summary));
+  EXPECT_EQ(json.at("extent_m"), nlohmann::json({7.5, 1.5, 2.0}));
+  EXPECT_EQ(json.at("tiles"), 3);
+  EXPECT_EQ(json.at("tile_entries").at("max"), 2);
+  EXPECT_EQ(json.at("bytes").at("file"), 1000);
+  EXPECT_EQ(json.at("bytes").at("per_entry"), 250.0);
+  EXPECT_EQ(json.at("bytes").at("per_voxel"), 500.0);
   EXPECT_EQ(json.at("voxels"), 2);
   EXPECT_EQ(json.at("box_min_m"), nlohmann::json({-2.0, -1.0, 0.0}));
   EXPECT_EQ(json.at("label_points").at("ground"), 6);
@@ -131,6 +162,9 @@ TEST(MapSummary, OfAnEmptyMapIsZero) {
   const MapSummary summary = summarize(WeightedMapBuilder(1.0).build());
   EXPECT_EQ(summary.points, 0U);
   EXPECT_EQ(summary.weight.max, 0.0);
+  EXPECT_EQ(summary.area_m2, 0.0);
+  EXPECT_EQ(summary.tiles, 0U);
+  EXPECT_EQ(summary.tile_entries.max, 0U);
   EXPECT_EQ(nlohmann::json::parse(toJsonText(summary)).at("class_voxels").at("linear_share"), 0.0);
 }
 
