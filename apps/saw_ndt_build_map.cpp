@@ -1,12 +1,15 @@
 #include <iostream>
+#include <utility>
 
 #include "app_options.h"
 #include "common/atomic_output.h"
 #include "motion_argument.h"
 #include "progress_bar.h"
 #include "recording_argument.h"
+#include "remove_moved_argument.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/drive_map.h"
+#include "saw_ndt/drives/moved_removal.h"
 #include "saw_ndt/drives/scan_selection.h"
 #include "segmentation_options.h"
 
@@ -42,7 +45,8 @@ std::string setMotionCompensation(const saw_ndt::AppOptions& app, const saw_ndt:
 
 int main(int argc, char** argv) {
   std::string sequence, map_file, scans = ":", shard = "1/1";
-  bool classical = false, strict = false;
+  bool classical = false, strict = false, removes_moved = false;
+  saw_ndt::RemoveMovedArgument remove_moved;
   saw_ndt::DriveMapOptions options;
   saw_ndt::SegmentationArguments segmentation;
   saw_ndt::RecordingArgument recording_argument;
@@ -58,6 +62,10 @@ int main(int argc, char** argv) {
                 "are learned as for all of them");
   app.addFlag("classical", &classical, "do not segment: raw points without labels");
   app.addFlag("strict", &strict, "a scan that cannot be read is an error, and nothing is written");
+  app.addFlag("remove-moved", &removes_moved,
+              "remove what moved, vehicles and persons: voxels that few of the scans hit which saw onto or through "
+              "them. Scans are read twice");
+  remove_moved.addTo(app);
   motion.addTo(app);
   recording_argument.addTo(app);
   segmentation.addTo(app);
@@ -67,6 +75,14 @@ int main(int argc, char** argv) {
     const std::vector<int> selected =
         saw_ndt::checkedUsage([&] { return saw_ndt::parseScanSelection(scans, recording->scanCount()); });
     const std::vector<int> mapped = saw_ndt::checkedUsage([&] { return saw_ndt::parseScanShard(shard, selected); });
+    if (app.isGiven("max-hit-share") && !removes_moved) {
+      throw saw_ndt::UsageError("-max-hit-share goes with -remove-moved");
+    }
+    if (removes_moved && mapped.size() != selected.size()) {
+      throw saw_ndt::UsageError(
+          "-remove-moved needs all scans, not those of a -shard: saw_ndt_map_remove_moved takes the merged map");
+    }
+    remove_moved.check();
     options.threads = app.threads();
     options.segmentation = segmentation.stated();
     saw_ndt::checkedUsage([&] { return saw_ndt::WeightedMapBuilder(options.resolution_m); });
@@ -92,9 +108,16 @@ int main(int argc, char** argv) {
         progress.step();
       };
     }
-    const saw_ndt::WeightedVoxelMap map =
+    saw_ndt::WeightedVoxelMap map =
         saw_ndt::buildDriveMap(*recording->scans(mapped), options, [&] { progress.step(); }).build();
     for (const std::string& failure : left_out) std::cerr << app.name() << ": " << failure << ": left out\n";
+    if (removes_moved) {
+      map = remove_moved.remove(std::move(map), map_file, [&](saw_ndt::MovedVoxels& moved) {
+        saw_ndt::ProgressBar second(mapped.size());
+        if (!strict) options.scan_left_out = [&](const std::string&) { second.step(); };  // told already
+        saw_ndt::addScans(*recording->scans(mapped), options, moved, [&] { second.step(); });
+      });
+    }
     map.save(map_file);
     std::cout << map_file << ": " << map.voxelCount({}, options.threads) << " voxels of " << map.resolution()
               << " m from " << map.origin().point_count << " points of " << map.origin().scan_count << " scans";

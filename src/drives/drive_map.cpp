@@ -8,6 +8,7 @@
 #include "drives/reference_motion.h"
 #include "localization/motion_compensation.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/drives/moved_removal.h"
 
 namespace saw_ndt {
 
@@ -78,6 +79,31 @@ ScanView compensated(const RecordedScan& scan, const DriveMapOptions& options, s
 void DriveMapOptions::check() const {
   if (segmentation) segmentation->check();
   checkOption(scan_period_s > 0.0 && std::isfinite(scan_period_s), "scan_period_s", scan_period_s, "positive");
+}
+
+void addScans(ScanSource& scans, const DriveMapOptions& options, MovedVoxels& moved,
+              const std::function<void()>& scan_done) {
+  options.check();
+  SharedSource source(scans, options.scan_left_out);
+  const int threads = internal::threadCount(options.threads);
+  internal::forEachChunkOffline(threads, static_cast<std::size_t>(threads), [&](std::size_t, int) {
+    std::vector<LidarPoint> points;
+    RecordedScan scan;
+    while (source.next(scan)) {
+      ScanView view = viewOf(scan);
+      if (options.motion_compensation != MotionCompensation::OFF) {
+        try {
+          view = compensated(scan, options, points);
+        } catch (const Error& error) {
+          source.fail(error);
+          return;
+        }
+      }
+      moved.addScan(view, *scan.T_map_lidar);
+      if (scan_done) scan_done();
+    }
+  });
+  source.rethrow();
 }
 
 WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "saw_ndt/common/geometry.h"
+#include "common/polar_angle.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "segmentation/range_image_loops.cpp"
@@ -19,31 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kPointsAhead = 96;
 constexpr std::size_t kBlock = PointMeasurements::kBlock;
 constexpr std::uint16_t kNoColumn = PointMeasurements::kNoColumn;
-constexpr float kTurn = static_cast<float>(2.0 * kPi);
 constexpr float kGreatestFloat = 3.402823466e+38F;
-constexpr float kMinNormalFloat = 1.175494351e-38F;
-
-// The angle of (x, y) from the x axis, 0 to 2 pi, to 2e-6 rad and without a branch, so that the compiler makes vector
-// code of a loop over it. Minimax polynomial of the arc tangent on [0, 1] (Abramowitz and Stegun 4.4.49).
-HWY_INLINE float azimuthOf(float x, float y) {
-  const float absolute_x = __builtin_fabsf(x);
-  const float absolute_y = __builtin_fabsf(y);
-  const float greater = absolute_x < absolute_y ? absolute_y : absolute_x;
-  const float smaller = absolute_y < absolute_x ? absolute_y : absolute_x;
-  const float t = smaller / (greater < kMinNormalFloat ? kMinNormalFloat : greater);
-  const float s = t * t;
-  const float polynomial =
-      1.0F +
-      s * (-0.3333314528F +
-           s * (0.1999355085F +
-                s * (-0.1420889944F +
-                     s * (0.1065626393F +
-                          s * (-0.0752896400F + s * (0.0429096138F + s * (-0.0161657367F + s * 0.0028662257F)))))));
-  float angle = t * polynomial;
-  angle = absolute_y > absolute_x ? static_cast<float>(kPi / 2) - angle : angle;
-  angle = x < 0.0F ? static_cast<float>(kPi) - angle : angle;
-  return y < 0.0F ? kTurn - angle : angle;
-}
 
 HWY_INLINE void measureBlock(std::size_t count, const ProjectionGeometry geometry, const float* __restrict x,
                              const float* __restrict y, const float* __restrict z, std::uint16_t* __restrict column,
@@ -56,7 +32,7 @@ HWY_INLINE void measureBlock(std::size_t count, const ProjectionGeometry geometr
     // Not a number compares false; an infinite coordinate, or one whose square overflows, gives infinity.
     const bool valid = (squared_range > least_squared_range) & (squared_range <= greatest_squared_range);
     const float safe_squared_range = valid ? squared_range : 0.0F;
-    const float place = azimuthOf(x[i], y[i]) * geometry.columns_per_radian;
+    const float place = polarAngle(x[i], y[i]) * geometry.columns_per_radian;
     const float safe_place = valid ? place : 0.0F;
     const float level_height = geometry.up_z * z[i] + geometry.up_x * x[i] + geometry.up_y * y[i];
     const float squared_horizontal_range = safe_squared_range - level_height * level_height;
