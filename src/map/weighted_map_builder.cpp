@@ -1,6 +1,7 @@
 #include "saw_ndt/map/weighted_map_builder.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -11,6 +12,9 @@
 
 #include "common/executor.h"
 #include "common/no_return.h"
+#include "map/map_file_writer.h"
+#include "map/sums_statistics.h"
+#include "map/tiled_entries.h"
 #include "map/voxel_runs.h"
 #include "map/voxel_sums_table.h"
 #include "saw_ndt/common/error.h"
@@ -62,7 +66,7 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
         const VoxelCoordinate voxel(block->voxel[0][point], block->voxel[1][point], block->voxel[2][point]);
         const std::size_t place = table.placeOf(voxel, static_cast<StructuralLabel>(block->label[point]));
         table.meet(place, scan);
-        VoxelSums& sums = table.sums(place);
+        VoxelSums& sums = table.entry(place).sums;
         sums.count += run_size;
         for (std::size_t j = 0; j < 3; ++j) sums.sum[j] += run.sum_count[j];
         for (std::size_t j = 0; j < 6; ++j) sums.product[j] += run.product[j];
@@ -117,7 +121,7 @@ WeightedMapBuilder& WeightedMapBuilder::operator=(const WeightedMapBuilder& othe
 }
 WeightedMapBuilder& WeightedMapBuilder::operator=(WeightedMapBuilder&& other) noexcept = default;
 
-bool WeightedMapBuilder::isEmpty() const { return origin_.scan_count == 0 && table_->entries().empty(); }
+bool WeightedMapBuilder::isEmpty() const { return origin_.scan_count == 0 && table_->size() == 0; }
 
 void WeightedMapBuilder::requireKind(bool labelled) const {
   if (!isEmpty() && origin_.labelled != labelled) {
@@ -179,51 +183,103 @@ void WeightedMapBuilder::addPoints(const ScanView& points, const LabelView& labe
     parts[p].point_count = addRange(points, labels, start(p), start(p + 1), placement, scan, parts[p].table);
   });
   for (const Part& part : parts) {
-    table_->add(part.table.entries(), [&](const LabelledVoxelSums&, const LabelledVoxelSums&, std::size_t place) {
+    table_->add(part.table, [&](const LabelledVoxelSums&, const LabelledVoxelSums&, std::size_t place) {
       table_->meet(place, scan);
     });
     origin_.point_count += part.point_count;
   }
 }
 
-void WeightedMapBuilder::merge(const WeightedMapBuilder& other) { merge(other.origin_, other.table_->entries()); }
+void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
+  EntryBatches batches;
+  other.table_->forEachBatch([&](const std::vector<LabelledVoxelSums>& entries) { batches.push_back(&entries); });
+  merge(other.origin_, batches);
+}
 
-void WeightedMapBuilder::merge(const WeightedVoxelMap& map) { merge(map.origin(), map.entries()); }
+void WeightedMapBuilder::merge(const WeightedVoxelMap& map) { merge(map.origin(), {&map.entries()}); }
 
-void WeightedMapBuilder::merge(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) {
+void WeightedMapBuilder::merge(const MapOrigin& origin, const EntryBatches& batches) {
   checkOption(origin.resolution_m == origin_.resolution_m, "resolution_m", fieldText(origin.resolution_m),
               ("that of the map merged into, " + fieldText(origin_.resolution_m)).c_str());
-  const bool adds = origin.scan_count != 0 || !entries.empty();
+  const bool adds = origin.scan_count != 0 ||
+                    std::any_of(batches.begin(), batches.end(), [](const auto* entries) { return !entries->empty(); });
   if (adds) requireKind(origin.labelled);
   requireSameSegmentation(origin_.segmentation, origin.segmentation);
   if (!adds) return;
-  requireRoomFor(origin, entries);
+  requireRoomFor(origin, batches);
   beginAdding(origin.labelled, origin.software_version);
-  table_->add(entries,
-              [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { addScanCount(from, into); });
+  for (const std::vector<LabelledVoxelSums>* const entries : batches) {
+    table_->add(*entries,
+                [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { addScanCount(from, into); });
+  }
   origin_.scan_count += origin.scan_count;
   origin_.point_count += origin.point_count;
 }
 
-void WeightedMapBuilder::requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const {
+void WeightedMapBuilder::requireRoomFor(const MapOrigin& origin, const EntryBatches& batches) const {
   if (origin.scan_count > std::numeric_limits<std::uint64_t>::max() - origin_.scan_count) {
     throw std::invalid_argument("scan_count: more scans than can be counted");
   }
   if (origin_.point_count + origin.point_count <= VoxelSums::kMostPoints) return;
-  for (const LabelledVoxelSums& from : entries) {
-    const LabelledVoxelSums* const into = table_->find(from.voxel, from.label);
-    if (into != nullptr && into->sums.count + from.sums.count > VoxelSums::kMostPoints) {
-      throw std::invalid_argument("a voxel would hold more than 2^33 points");
+  for (const std::vector<LabelledVoxelSums>* const entries : batches) {
+    for (const LabelledVoxelSums& from : *entries) {
+      const LabelledVoxelSums* const into = table_->find(from.voxel, from.label);
+      if (into != nullptr && into->sums.count + from.sums.count > VoxelSums::kMostPoints) {
+        throw std::invalid_argument("a voxel would hold more than 2^33 points");
+      }
     }
   }
 }
 
-WeightedVoxelMap WeightedMapBuilder::build() const& { return {origin_, table_->entries()}; }
+std::size_t WeightedMapBuilder::entryCount() const { return table_->size(); }
+
+WeightedVoxelMap WeightedMapBuilder::build() const& {
+  std::vector<LabelledVoxelSums> entries;
+  entries.reserve(table_->size());
+  table_->forEachBatch(
+      [&](const std::vector<LabelledVoxelSums>& batch) { entries.insert(entries.end(), batch.begin(), batch.end()); });
+  return {origin_, std::move(entries)};
+}
 
 WeightedVoxelMap WeightedMapBuilder::build() && {
   const MapOrigin origin = origin_;
   origin_.scan_count = origin_.point_count = 0;
   return {origin, table_->takeEntries()};
+}
+
+void WeightedMapBuilder::forEachTile(
+    const std::function<void(const std::vector<LabelledVoxelSums>& entries)>& visit) const {
+  const TiledEntries tiles(*table_);
+  std::vector<LabelledVoxelSums> entries;
+  for (std::size_t tile = 0; tile < tiles.tileCount(); ++tile) {
+    tiles.read(tile, entries);
+    visit(entries);
+  }
+}
+
+void WeightedMapBuilder::save(const std::string& path) const {
+  const TiledEntries tiles(*table_);
+  MapFileWriter writer(path, origin_, tiles.tileCount());
+  std::vector<LabelledVoxelSums> entries;
+  for (std::size_t tile = 0; tile < tiles.tileCount(); ++tile) {
+    tiles.read(tile, entries);
+    writer.add(entries.data(), entries.data() + entries.size());
+  }
+  writer.commit(origin_.point_count);
+}
+
+std::size_t WeightedMapBuilder::voxelCount(const VoxelWeighting& weighting, int threads) const {
+  weighting.check();
+  const TiledEntries tiles(*table_);
+  std::atomic<std::size_t> count{0};
+  forEachChunk(threads, tiles.tileCount(), [&](std::size_t tile, int) {
+    std::vector<LabelledVoxelSums> entries;
+    tiles.read(tile, entries);
+    forEachStatistics(entries.data(), entries.data() + entries.size(), weighting, {},
+                      origin_.resolution_m / kStepsPerVoxel,
+                      [&](const std::vector<VoxelStatistics>& batch) { count += batch.size(); });
+  });
+  return count;
 }
 
 }  // namespace saw_ndt

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "expect_throws.h"
+#include "map/voxel_sums_table.h"
 #include "map_fixtures.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/version.h"
@@ -81,6 +82,52 @@ TEST(WeightedMapBuilder, AnyOrderOfCloudsAndPointsGivesTheSameBytes) {
     for (Scan& scan : scans) std::shuffle(scan.cloud.begin(), scan.cloud.end(), random);
     EXPECT_TRUE(savedBytes(builderOf(scans).build()) == expected);
   }
+}
+
+TEST(WeightedMapBuilder, SavesAndCountsTileByTileWhatItsMapDoes) {
+  WeightedMapBuilder builder(0.3);
+  // Tiles on both sides of the origin, and some that lie too far apart for one number to order all voxels.
+  const std::vector<Scan> scans = drive();
+  for (const Scan& scan : scans) addCloud(builder, scan.cloud, scan.T_map_cloud);
+  for (const double far_m : {-6e8, 6e8}) {
+    Eigen::Isometry3d T_map_cloud = Eigen::Isometry3d::Identity();
+    T_map_cloud.translation().setConstant(far_m);
+    addCloud(builder, scans.front().cloud, T_map_cloud);
+  }
+  const WeightedVoxelMap map = builder.build();
+  const TemporaryFolder folder;
+  builder.save((folder.path() / "a.map").string());
+  EXPECT_TRUE(contentOf(folder.path() / "a.map") == savedBytes(map));
+  EXPECT_EQ(builder.entryCount(), map.entries().size());
+  EXPECT_GT(map.voxelCount(), 1000U);
+  for (const int threads : {1, 3}) EXPECT_EQ(builder.voxelCount({}, threads), map.voxelCount());
+  std::size_t next = 0;
+  builder.forEachTile([&](const std::vector<LabelledVoxelSums>& entries) {
+    for (const LabelledVoxelSums& entry : entries) {
+      ASSERT_LT(next, map.entries().size());
+      ASSERT_EQ(entry.voxel, map.entries()[next].voxel);
+      ASSERT_EQ(entry.sums, map.entries()[next++].sums);
+    }
+  });
+  EXPECT_EQ(next, map.entries().size());
+}
+
+TEST(VoxelSumsTable, EntriesStayWhereTheyAre) {
+  internal::VoxelSumsTable table;
+  table.entry(table.placeOf({1, 2, 3}, StructuralLabel::GROUND)).sums.add({1, 1, 1});
+  const LabelledVoxelSums* const first = &table.entry(0);
+  for (int i = 0; i < 100000; ++i) table.placeOf({i, 0, 0}, StructuralLabel::NOISE);
+  EXPECT_EQ(table.size(), 100001U);
+  EXPECT_EQ(&table.entry(0), first);
+  EXPECT_EQ(table.find({1, 2, 3}, StructuralLabel::GROUND), first);
+  // A copy has its own, and goes on by itself.
+  internal::VoxelSumsTable copy = table;
+  EXPECT_NE(&copy.entry(0), first);
+  EXPECT_EQ(copy.placeOf({77, 0, 0}, StructuralLabel::NOISE), 78U);
+  EXPECT_EQ(copy.placeOf({-1, 0, 0}, StructuralLabel::NOISE), 100001U);
+  EXPECT_EQ(table.size(), 100001U);
+  EXPECT_EQ(copy.takeEntries().size(), 100002U);
+  EXPECT_EQ(copy.size(), 0U);
 }
 
 TEST(WeightedMapBuilder, MergedPartsGiveTheSameBytes) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,18 +62,34 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   /// What has been added so far.
   const MapOrigin& origin() const { return origin_; }
 
+  /// How many sums have been collected, one a voxel and label: what memory grows with, some 120 bytes each.
+  std::size_t entryCount() const;
+
   /// The map of everything added so far.
   WeightedVoxelMap build() const&;
   /// The same without a copy of the sums; the builder is empty afterwards.
   WeightedVoxelMap build() &&;
 
+  // The same as of build()'s map, without making it: tile by tile, in hardly more memory than the builder has.
+
+  /// Calls visit(entries) for each tile that has any, in map order, with its entries in map order.
+  void forEachTile(const std::function<void(const std::vector<LabelledVoxelSums>& entries)>& visit) const;
+  /// Writes the map file of everything added so far. @throws Error
+  void save(const std::string& path) const;
+  /// How many voxels have a distribution.
+  /// @param threads  0: all cores
+  /// @throws std::invalid_argument where the weighting does not hold
+  std::size_t voxelCount(const VoxelWeighting& weighting = {}, int threads = 0) const;
+
  private:
+  using EntryBatches = std::vector<const std::vector<LabelledVoxelSums>*>;
+
   bool isEmpty() const;
   void requireKind(bool labelled) const;
   void requireAddable(const LabelView& labels, const Eigen::Isometry3d& T_map_scan) const;
-  void requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const;
+  void requireRoomFor(const MapOrigin& origin, const EntryBatches& batches) const;
   void beginAdding(bool labelled, const std::string& software_version);
-  void merge(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries);
+  void merge(const MapOrigin& origin, const EntryBatches& batches);
   void addPoints(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan, int threads);
 
   MapOrigin origin_;
