@@ -125,7 +125,7 @@ std::vector<std::uint64_t> scatterOffsets(const mpi::communicator& ranks, const 
   std::vector<std::uint64_t> own(own_count);
   const auto size = static_cast<int>(own_count);
   if (ranks.rank() == 0) {
-    mpi::scatterv(ranks, plan.offsets, plan.tile_counts, own.data(), size, 0);
+    mpi::scatterv(ranks, plan.offsets, plan.tile_counts, own.data(), 0);
   } else {
     mpi::scatterv(ranks, own.data(), size, 0);
   }
