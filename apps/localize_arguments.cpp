@@ -20,7 +20,9 @@ void LocalizeArguments::addTo(AppOptions& app) {
                     std::string(RecordingArgument::kKinds) +
                         "; or a live source: a folder that grows (-follow), or a Velodyne's packets, udp:PORT or "
                         "udp:ADDRESS:PORT");
-  app.addPositional("MAP", &map_file, "map file of saw_ndt_build_map");
+  app.addPositional(
+      "MAP", &map_file,
+      "map file of saw_ndt_build_map or, of which the tiles around the vehicle alone are held, of saw_ndt_map_pack");
   app.addPositional("OUT_DIR", &out_dir, "folder for the results, made where it is missing");
   app.addChoice("method", &method_, LocalizationMethod::names(),
                 "weighted is this project's, the others are the paper's");
@@ -54,6 +56,12 @@ void LocalizeArguments::addTo(AppOptions& app) {
   app.addOption("search-budget", &options.search_budget_ms, "MS",
                 "time for a scan while all of the map is searched, which then goes on beside further scans (default: "
                 "until that is done)");
+  app.addOption(
+      "map-radius", &options.tiles.radius_m, "METRES",
+      "how far around the vehicle tiles of a map of saw_ndt_map_pack are held; points of scans that lie farther "
+      "away are left out");
+  app.addOption("map-memory", &map_memory_mb, "MB",
+                "for the voxels around one place at most; where that is less than needed, fewer tiles are held");
   app.addFlag("no-search", &no_search_, "do not look for a pose that is lost, but align from predictions alone");
   app.addOption("base-lidar", &base_lidar_, kPosePlaceholder,
                 "pose of the LiDAR on the vehicle's base, metres and degrees; all zero: the base is the LiDAR");
@@ -89,6 +97,8 @@ void LocalizeArguments::check(const AppOptions& app) {
     checkOption(initial_radius_m_ > 0.0, "initial-radius", initial_radius_m_, "positive");
     checkOption(initial_yaw_range_deg_ > 0.0 && initial_yaw_range_deg_ <= 180.0, "initial-yaw-range",
                 initial_yaw_range_deg_, "positive and at most 180");
+    checkOption(map_memory_mb >= 1.0 && map_memory_mb <= 1e6, "map-memory", map_memory_mb, "1 to 1000000");
+    options.tiles.most_bytes = static_cast<std::size_t>(map_memory_mb * 1e6);
     checkOption(max_waiting >= 1, "max-waiting", max_waiting, "1 or more");
     checkOption(gnss_sigma_m > 0.0, "gnss-sigma", gnss_sigma_m, "positive");
     checkOption(drift.share >= 0.0, "odometry-drift", drift.share, "0 or more");

@@ -27,6 +27,7 @@ struct LocalizeArguments {
   int max_waiting = 5;      ///< scans of a live source
   std::string stream_file;  ///< empty: none
   std::string stream_format = "json";
+  double map_memory_mb = 256.0;
   LocalizerOptions options;  ///< segmentation and motion compensation as stated alone
   RecordingArgument recording;
   SegmentationArguments segmentation;

@@ -38,7 +38,20 @@ void LocalizeRun::tellScansWithoutTimes(const DriveLocalization& run, const Moti
                  std::to_string(without_times) + " scans have no times: these were taken as they are");
 }
 
-void LocalizeRun::localize(const NdtTarget& target, const LocalizerOptions& options, const MotionTrial& motion,
+void LocalizeRun::tellTiles(const LocalizationSummary& summary) const {
+  if (!summary.tiles) return;
+  const TileLoads& tiles = *summary.tiles;
+  if (tiles.waits > 0) {
+    warn(app_, std::to_string(tiles.waits) + " times a scan waited for tiles of " + arguments_.map_file + ", " +
+                   std::to_string(tiles.longest_wait_ms) + " ms at most");
+  }
+  if (tiles.least_radius_m > 0.0) {
+    warn(app_, "-map-memory " + std::to_string(arguments_.map_memory_mb) + " MB left room for tiles " +
+                   std::to_string(tiles.least_radius_m) + " m around the vehicle alone");
+  }
+}
+
+void LocalizeRun::localize(const TiledTarget& target, const LocalizerOptions& options, const MotionTrial& motion,
                            const std::optional<Eigen::Isometry3d>& T_map_base_initial, ScanSource& scans,
                            const Eigen::Isometry3d& T_camera_lidar, const LiveSource* live) {
   Localizer localizer(target, options);
@@ -60,6 +73,8 @@ void LocalizeRun::localize(const NdtTarget& target, const LocalizerOptions& opti
 
   LocalizationSummary summary = summarize(run, localizer.options(), arguments_.skip_s);
   summary.motion_compensation_reason = motion.reason;
+  if (target.map()) summary.tiles = *localizer.tileLoads();
+  tellTiles(summary);
   if (live != nullptr) summary.left_out = live->leftOut();
   const bool has_reference = std::any_of(run.T_map_lidar_reference.begin(), run.T_map_lidar_reference.end(),
                                          [](const auto& pose) { return pose.has_value(); });

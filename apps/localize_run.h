@@ -7,11 +7,12 @@
 #include "localize_arguments.h"
 #include "output_folder.h"
 #include "progress_bar.h"
+#include "report/localization_summary.h"
 #include "report/pose_stream.h"
 #include "saw_ndt/drives/drive_localization.h"
 #include "saw_ndt/drives/live_source.h"
 #include "saw_ndt/drives/motion_trial.h"
-#include "saw_ndt/map/ndt_target.h"
+#include "saw_ndt/map/tiled_target.h"
 
 namespace saw_ndt {
 
@@ -24,12 +25,13 @@ class LocalizeRun {
   /// Localizes all scans of a source and writes the results.
   /// @param live  the source where it is a live one, else null
   /// @throws Error where no scan was located or, with -strict, one could not be read; results are written all the same
-  void localize(const NdtTarget& target, const LocalizerOptions& options, const MotionTrial& motion,
+  void localize(const TiledTarget& target, const LocalizerOptions& options, const MotionTrial& motion,
                 const std::optional<Eigen::Isometry3d>& T_map_base_initial, ScanSource& scans,
                 const Eigen::Isometry3d& T_camera_lidar, const LiveSource* live = nullptr);
 
  private:
   void tell(const RecordedScan& scan, const LocalizationResult& result, std::size_t left_out);
+  void tellTiles(const LocalizationSummary& summary) const;
   void tellScansWithoutTimes(const DriveLocalization& run, const MotionTrial& motion) const;
 
   const AppOptions& app_;

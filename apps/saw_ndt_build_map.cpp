@@ -28,11 +28,10 @@ int main(int argc, char** argv) {
     const auto step = [&] { progress.step(); };
     const saw_ndt::WeightedMapBuilder map = saw_ndt::internal::buildMapOfDrives(
         plans, [&](int drive) -> const saw_ndt::Recording& { return arguments.open(drive); },
-        arguments.options(left_out, step), step);
+        arguments.options(left_out, step), std::filesystem::path(arguments.mapFile()).parent_path() / ".", step);
     for (const std::string& failure : left_out) std::cerr << app.name() << ": " << failure << ": left out\n";
-    map.save(arguments.mapFile());
-    std::cout << saw_ndt::mapText(arguments.mapFile(), map.voxelCount({}, app.threads()), map.origin(), left_out.size())
-              << '\n'
+    const saw_ndt::WrittenMap written = map.save(arguments.mapFile(), app.threads());
+    std::cout << saw_ndt::mapText(arguments.mapFile(), written.voxel_count, map.origin(), left_out.size()) << '\n'
               << arguments.motionText();
   });
 }

@@ -63,17 +63,16 @@ class RankProgram {
     if (!app_.isGiven("threads")) options.threads = cores_;
     const MapOfRanks map = saw_ndt::internal::buildMapOfRanks(
         ranks_, plans, [&](int drive) -> const saw_ndt::Recording& { return arguments_.open(drive); }, options,
-        [&] { progress.step(); });
+        std::filesystem::path(arguments_.mapFile()).parent_path() / ".", [&] { progress.step(); });
     for (const std::string& failure : map.left_out) std::cerr << app_.name() << ": " << failure << ": left out\n";
-    saw_ndt::internal::writeMapOfRanks(ranks_, arguments_.mapFile(), map);
-    const std::size_t own_voxels = map.owned.voxelCount({}, options.threads);
+    const std::uint64_t own_voxels = saw_ndt::internal::writeMapOfRanks(ranks_, arguments_.mapFile(), map);
     if (ranks_.rank() != 0) return mpi::reduce(ranks_, own_voxels, std::plus<>(), 0);
-    std::size_t voxels = 0;
+    std::uint64_t voxels = 0;
     mpi::reduce(ranks_, own_voxels, voxels, std::plus<>(), 0);
     tell(map, voxels);
   }
 
-  void tell(const MapOfRanks& map, std::size_t voxels) const {
+  void tell(const MapOfRanks& map, std::uint64_t voxels) const {
     std::uint64_t least = map.work.front().scans, most = 0, bytes_sent = 0;
     for (const saw_ndt::internal::RankWork& work : map.work) {
       least = std::min(least, work.scans);

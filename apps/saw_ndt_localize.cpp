@@ -22,11 +22,12 @@ constexpr char kDescription[] =
     "they tell the errors. A vehicle that is lost is looked for, first around its prediction, "
     "then in all of the map.";
 
-saw_ndt::NdtTarget loadTarget(const std::string& file, const saw_ndt::LocalizationMethod& method, int threads) {
-  saw_ndt::NdtTarget target = saw_ndt::NdtTarget::load(file, method.voxels, threads);
-  if (method.segment && !target.labelled()) {
+saw_ndt::TiledTarget loadTarget(const std::string& file, const saw_ndt::LocalizerOptions& options) {
+  saw_ndt::TiledTarget target =
+      saw_ndt::TiledTarget::open(file, options.method.voxels, options.tiles, options.alignment.threads);
+  if (options.method.segment && !target.labelled()) {
     throw saw_ndt::Error(file, "",
-                         "was built with -classical: it has no labels, which the method " + method.name +
+                         "was built with -classical: it has no labels, which the method " + options.method.name +
                              " needs; use -method classical or build it without");
   }
   return target;
@@ -67,7 +68,7 @@ void localizeRecording(const saw_ndt::AppOptions& app, const saw_ndt::LocalizeAr
   };
 
   saw_ndt::LocalizerOptions options = arguments.options;
-  const saw_ndt::NdtTarget target = loadTarget(arguments.map_file, options.method, app.threads());
+  const saw_ndt::TiledTarget target = loadTarget(arguments.map_file, options);
   if (options.method.segment) {
     options.segmentation =
         arguments.segmentation.learnedFrom(saw_ndt::firstScans(*recording->scans(selected)),
@@ -96,7 +97,7 @@ void localizeLive(const saw_ndt::AppOptions& app, const saw_ndt::LocalizeArgumen
   std::unique_ptr<saw_ndt::LiveSource> source;  // lives longer than what may stop it
   saw_ndt::Interruption interruption;
   saw_ndt::LocalizerOptions options = arguments.options;
-  const saw_ndt::NdtTarget target = loadTarget(arguments.map_file, options.method, app.threads());
+  const saw_ndt::TiledTarget target = loadTarget(arguments.map_file, options);
   saw_ndt::LocalizeRun run(app, arguments);
   source = saw_ndt::openLive(arguments);
   interruption.onFirst([&] { source->stop(); });

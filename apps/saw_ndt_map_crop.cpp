@@ -3,7 +3,6 @@
 
 #include "app_options.h"
 #include "common/atomic_output.h"
-#include "saw_ndt/common/error.h"
 #include "saw_ndt/io/kitti.h"
 #include "saw_ndt/io/polygon_file.h"
 #include "saw_ndt/io/trajectory.h"
@@ -74,8 +73,7 @@ struct RegionArguments {
     const saw_ndt::MapRegion at_height = saw_ndt::checkedUsage([&] {
       return saw_ndt::boxRegion({-kInfinity, -kInfinity, z_range_m[0]}, {kInfinity, kInfinity, z_range_m[1]});
     });
-    return
-        [inside, at_height](const Eigen::Vector3d& position_m) { return at_height(position_m) && inside(position_m); };
+    return saw_ndt::commonRegion(at_height, inside);
   }
 };
 
@@ -93,11 +91,8 @@ int main(int argc, char** argv) {
     const saw_ndt::MapRegion region = arguments.region(app);
     // Found out before the long work: whether the map can be written. This leaves nothing behind.
     { const saw_ndt::internal::AtomicOutput probe(cropped_file); }
-    const saw_ndt::WeightedVoxelMap map = saw_ndt::WeightedVoxelMap::load(map_file);
-    const saw_ndt::WeightedVoxelMap cropped = saw_ndt::cropMap(map, region);
-    if (cropped.entries().empty()) throw saw_ndt::Error(map_file, "", "none of its voxels lies there: nothing is left");
-    cropped.save(cropped_file);
-    std::cout << cropped_file << ": " << cropped.voxelCount({}, app.threads()) << " voxels of " << cropped.resolution()
-              << " m with " << cropped.origin().point_count << " of " << map.origin().point_count << " points\n";
+    const saw_ndt::CroppedMap cropped = saw_ndt::cropMapFile(map_file, region, cropped_file, app.threads());
+    std::cout << cropped_file << ": " << cropped.voxel_count << " voxels of " << cropped.origin.resolution_m
+              << " m with " << cropped.origin.point_count << " of " << cropped.point_count_before << " points\n";
   });
 }

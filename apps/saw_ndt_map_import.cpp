@@ -44,7 +44,7 @@ void report(const std::string& map_file, const saw_ndt::ImportedMap& imported, c
   }
   if (imported.origin_m != std::array<double, 3>{}) {
     std::cout << "origin taken off: " << textOf(imported.origin_m)
-              << " (the map file does not hold it: add it to poses in the map for those of the cloud)\n";
+              << " (the map file tells it: add it to poses in the map for those of the cloud)\n";
   }
 }
 

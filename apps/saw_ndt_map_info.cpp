@@ -6,6 +6,7 @@
 #include "report/map_summary.h"
 #include "report/voxel_cloud.h"
 #include "saw_ndt/io/point_cloud_file.h"
+#include "saw_ndt/map/map_update.h"
 
 namespace {
 
@@ -33,7 +34,8 @@ int main(int argc, char** argv) {
       pcl::toPCLPointCloud2(saw_ndt::voxelCloud(map), voxels);
       saw_ndt::writePcd(pcd_file, voxels);
     }
-    const saw_ndt::MapSummary summary = saw_ndt::summarize(map);
+    saw_ndt::MapSummary summary = saw_ndt::summarize(map);
+    summary.dead_bytes = saw_ndt::deadBytesOfMapFile(map_file);
     std::cout << (as_json ? saw_ndt::toJsonText(summary) : saw_ndt::toText(summary));
   });
 }

@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <boost/interprocess/exceptions.hpp>
 #include <boost/interprocess/file_mapping.hpp>
 #include <cerrno>
@@ -29,7 +30,7 @@ MappedFile::MappedFile(const std::string& path) {
 
 void MappedFile::forget(std::uint64_t offset, std::uint64_t count) const {
   const std::uint64_t page = boost::interprocess::mapped_region::get_page_size();
-  const std::uint64_t first = (offset + page - 1) / page * page, last = (offset + count) / page * page;
+  const std::uint64_t first = offset / page * page, last = std::min<std::uint64_t>(offset + count, size());
   if (first >= last) return;
   madvise(static_cast<char*>(region_.get_address()) + first, last - first, MADV_DONTNEED);
 }

@@ -19,8 +19,8 @@ class SAW_NDT_EXPORT MappedFile {
   const char* data() const { return static_cast<const char*>(region_.get_address()); }
   std::size_t size() const { return region_.get_size(); }
 
-  /// Gives back the memory of the pages that lie within a range, which will hardly be read again: the process has less
-  /// of it, and what is read is the same.
+  /// Gives back the memory of the pages that a range of the file meets, which will hardly be read again: the process
+  /// has less of it, and what is read is the same.
   void forget(std::uint64_t offset, std::uint64_t count) const;
 
  private:

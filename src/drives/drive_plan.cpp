@@ -21,8 +21,10 @@ void requireAnyScan(const MapOrigin& origin, const std::string& last_failure) {
 }
 
 WeightedMapBuilder buildMapOfDrives(const std::vector<DrivePlan>& plans, const DriveOpener& open,
-                                    const DriveMapOptions& common, const std::function<void()>& scan_done) {
+                                    const DriveMapOptions& common, const std::filesystem::path& spill_folder,
+                                    const std::function<void()>& scan_done) {
   WeightedMapBuilder map(common.resolution_m, plans.front().segmentation);
+  if (!spill_folder.empty()) map.limitMemory(kMostEntriesInMemory, spill_folder);
   std::string last_failure;
   DriveMapOptions noting = common;
   if (common.scan_left_out) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -18,6 +20,9 @@ struct DrivePlan {
   MotionCompensation motion_compensation = MotionCompensation::OFF;
 };
 
+/// How many sums the builder of a map keeps in memory, some 130 MB.
+constexpr std::size_t kMostEntriesInMemory = 1000000;
+
 /// Opens a drive, by its number from 0 on. The recording is valid until the next call.
 using DriveOpener = std::function<const Recording&(int drive)>;
 
@@ -32,9 +37,11 @@ SAW_NDT_EXPORT void requireAnyScan(const MapOrigin& origin, const std::string& l
 /// the segmentation of the first one.
 /// @param plans      of the drives, one or more
 /// @param common     the same for all of them
+/// @param spill_folder  of a temporary file for what is more than kMostEntriesInMemory
 /// @param scan_done  called after each scan, from any thread; may be empty
 SAW_NDT_EXPORT WeightedMapBuilder buildMapOfDrives(const std::vector<DrivePlan>& plans, const DriveOpener& open,
                                                    const DriveMapOptions& common,
+                                                   const std::filesystem::path& spill_folder,
                                                    const std::function<void()>& scan_done);
 
 }  // namespace saw_ndt::internal

@@ -113,6 +113,7 @@ class Importer {
                   "holds no point for a map: none of " + std::to_string(map_->points_read) +
                       " is finite, not (0, 0, 0) and within reach");
     }
+    map_->builder.setMapOrigin(Eigen::Vector3d(map_->origin_m.data()));
     return std::move(*map_);
   }
 

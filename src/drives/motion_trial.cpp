@@ -147,7 +147,7 @@ struct LocatedScan {
 };
 
 // Skew moves poses of successive scans alike, so that it hardly changes the motion between them.
-std::vector<LocatedScan> locatedAsTheyAre(const NdtTarget& target, const LocalizerOptions& options,
+std::vector<LocatedScan> locatedAsTheyAre(const TiledTarget& target, const LocalizerOptions& options,
                                           const MovingScans& moving) {
   Localizer localizer(target, options);
   start(localizer, moving.T_map_base_initial);
@@ -168,12 +168,12 @@ std::vector<LocatedScan> locatedAsTheyAre(const NdtTarget& target, const Localiz
 }
 
 // Fits of such scans once they are compensated by their motion, each found again from where it was.
-std::vector<double> fitsOfCompensated(const NdtTarget& target, LocalizerOptions options,
+std::vector<double> fitsOfCompensated(TiledTarget target, LocalizerOptions options,
                                       const std::vector<RecordedScan>& scans, const std::vector<LocatedScan>& located,
                                       MotionCompensation compensation) {
   options.search = false;
   const AlignmentOptions alignment = Localizer(target, options).options().alignment;
-  ScanPreparation preparation(preparationOptions(options));
+  ScanPreparation preparation(preparationFor(target, options));
   NdtAligner aligner;
   ScanPeriod period(options.scan_period_s);
   for (const RecordedScan& scan : scans) period.add(scan.stamp_s);
@@ -185,7 +185,9 @@ std::vector<double> fitsOfCompensated(const NdtTarget& target, LocalizerOptions 
       compensateScan(viewOf(scan), compensation, {scan.stamp_s, period.seconds()}, ScanMotion::even(at.lidar_motion),
                      compensated.points);
     }
-    fits.push_back(fitOf(aligner.align(target, preparation.prepare(viewOf(compensated)), at.T_map_base, alignment)));
+    const SourcePoints& source = preparation.prepare(viewOf(compensated));
+    const NdtTarget target_there = target.at(at.T_map_base.translation(), 0.0);
+    fits.push_back(fitOf(aligner.align(target_there, source, at.T_map_base, alignment)));
   }
   return fits;
 }
@@ -252,7 +254,7 @@ std::vector<double> fitsInOwnMaps(const std::vector<ReferencedScan>& scans, cons
 
 }  // namespace
 
-MotionTrial tryMotionCompensation(const NdtTarget& target, const LocalizerOptions& options,
+MotionTrial tryMotionCompensation(const TiledTarget& target, const LocalizerOptions& options,
                                   const std::optional<Eigen::Isometry3d>& T_map_base_initial, ScanSource& scans) {
   LocalizerOptions with = options;
   with.motion_compensation = MotionCompensation::OFF;

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <tuple>
 
 #include "common/executor.h"
 #include "localization/place_index.h"
+#include "localization/place_table.h"
 #include "localization/scan_outline.h"
+#include "map/localization_map_file.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
@@ -46,7 +50,8 @@ struct Place {
   int count = 0;
   Column column;
   int heading = 0;
-  std::size_t tile = 0;
+  Column tile;
+  float ground_m = 0.0F;
 };
 
 // The cells of a scan under each heading.
@@ -85,7 +90,8 @@ TurnedOutlines turned(const std::vector<OutlineCell>& cells, const std::vector<d
 
 struct GlobalSearch::Parts {
   GlobalSearchOptions options;
-  PlaceIndex index;
+  std::optional<PlaceIndex> index;     // of a target
+  std::optional<LocalizationMap> map;  // otherwise, whose tables are read as they are needed
 
   std::vector<double> headingsOf(const std::optional<SearchRegion>& region) const {
     const int count = static_cast<int>(std::ceil(360.0 / options.heading_step_deg));
@@ -118,14 +124,9 @@ bool mayBeWithin(const PlaceIndex::Tile& tile, const SearchRegion& region) {
 // Looks for a scan at all places of a tile.
 class TileSearch {
  public:
-  TileSearch(const PlaceIndex& index, std::size_t tile_number, const std::optional<SearchRegion>& region,
+  TileSearch(const PlaceIndex& index, const PlaceIndex::Tile& tile, const std::optional<SearchRegion>& region,
              int least_count, int worse)
-      : tile_(index.tiles()[tile_number]),
-        tile_number_(tile_number),
-        tables_(index.tablesAround(tile_)),
-        region_(region),
-        least_count_(least_count),
-        worse_(worse) {}
+      : tile_(tile), tables_(index.tablesAround(tile_)), region_(region), least_count_(least_count), worse_(worse) {}
 
   std::vector<Place> search(const TurnedOutlines& outlines) {
     const int headings = static_cast<int>(outlines.headings_rad.size());
@@ -163,14 +164,13 @@ class TileSearch {
         if (count <= best.count) continue;
         const Column column{tile_.at.x * kPlaceTileSize + x, tile_.at.y * kPlaceTileSize + y};
         if (region_ && !isWithin(column, *region_)) continue;
-        best = {count, column, heading, tile_number_};
+        best = {count, column, heading, tile_.at, tile_.ground_m[static_cast<std::size_t>(y * kPlaceTileSize + x)]};
         least_count_ = std::max(least_count_, count - worse_);
       }
     }
   }
 
   const PlaceIndex::Tile& tile_;
-  std::size_t tile_number_;
   PlaceTables tables_;
   const std::optional<SearchRegion>& region_;
   int least_count_;
@@ -180,48 +180,128 @@ class TileSearch {
 };
 
 bool isBetter(const Place& a, const Place& b) {
-  return std::tuple(-a.count, a.tile, a.heading, a.column.y, a.column.x) <
-         std::tuple(-b.count, b.tile, b.heading, b.column.y, b.column.x);
+  return std::tuple(-a.count, a.tile.y, a.tile.x, a.heading, a.column.y, a.column.x) <
+         std::tuple(-b.count, b.tile.y, b.tile.x, b.heading, b.column.y, b.column.x);
+}
+
+// Looks for a scan in those tiles of an index that are asked for.
+class IndexSearch {
+ public:
+  IndexSearch(const ScanOutline& outline, const TurnedOutlines& outlines, const GlobalSearchOptions& options,
+              const std::optional<SearchRegion>& region, int threads)
+      : outlines_(outlines),
+        region_(region),
+        least_count_(leastCount(outline, options)),
+        worse_(static_cast<int>(kWorseShare * static_cast<double>(outline.cells.size()))),
+        threads_(threads) {}
+
+  static int leastCount(const ScanOutline& outline, const GlobalSearchOptions& options) {
+    return std::max(kLeastCount, static_cast<int>(options.least_share * static_cast<double>(outline.cells.size())));
+  }
+
+  /// @param first_row, last_row  tiles of other rows are there as neighbours
+  void search(const PlaceIndex& index, int first_row, int last_row) {
+    std::vector<const PlaceIndex::Tile*> searched;
+    for (std::size_t i = 0; i < index.standingTileCount(); ++i) {
+      const PlaceIndex::Tile& tile = index.tiles()[i];
+      if (tile.at.y < first_row || tile.at.y > last_row || (region_ && !mayBeWithin(tile, *region_))) continue;
+      searched.push_back(&tile);
+    }
+    std::vector<std::vector<Place>> found(searched.size());
+    forEachChunk(threads_, searched.size(), [&](std::size_t i, int) {
+      found[i] = TileSearch(index, *searched[i], region_, least_count_, worse_).search(outlines_);
+    });
+    for (const std::vector<Place>& of_tile : found) places_.insert(places_.end(), of_tile.begin(), of_tile.end());
+  }
+
+  std::vector<Place> takePlaces() {
+    std::sort(places_.begin(), places_.end(), isBetter);
+    return std::move(places_);
+  }
+
+ private:
+  const TurnedOutlines& outlines_;
+  const std::optional<SearchRegion>& region_;
+  int least_count_;
+  int worse_;
+  int threads_;
+  std::vector<Place> places_;
+};
+
+// Searches a map row after row of its tiles, a few of them at a time.
+void searchMap(const LocalizationMapFile& file, const std::optional<SearchRegion>& region, int threads,
+               IndexSearch& search) {
+  constexpr std::size_t kTilesAtOnce = 512;
+  static_assert(kPlaceTileSize * kColumn_m == kLocalizationTile_m);
+  std::vector<LocalizationTilePlace> places;
+  if (region) {
+    // With the neighbours of those that mayBeWithin().
+    places = file.tilesAround(region->T_map_base.translation().head<2>(), region->radius_m + 3.0 * kLocalizationTile_m);
+  } else {
+    for (std::size_t i = 0; i < file.tileCount(); ++i) places.push_back(file.tile(i));
+  }
+  places.erase(std::remove_if(places.begin(), places.end(),
+                              [](const LocalizationTilePlace& place) { return place.table_bytes == 0; }),
+               places.end());
+  const auto rowFrom = [&](int y) {
+    return static_cast<std::size_t>(
+        std::lower_bound(places.begin(), places.end(), y,
+                         [](const LocalizationTilePlace& place, int row) { return place.at.y < row; }) -
+        places.begin());
+  };
+  for (std::size_t first = 0; first < places.size();) {
+    std::size_t next = first;
+    do next = rowFrom(places[next].at.y + 1);
+    while (next < places.size() && next - first < kTilesAtOnce);
+    const int first_row = places[first].at.y, last_row = places[next - 1].at.y;
+    const std::size_t begin = rowFrom(first_row - 1), end = rowFrom(last_row + 2);
+    std::vector<PlaceIndex::Tile> tiles(end - begin);
+    forEachChunk(threads, tiles.size(), [&](std::size_t i, int) {
+      const LocalizationTilePlace& place = places[begin + i];
+      tiles[i].at = {place.at.x, place.at.y};
+      if (!decodePlaceTile(file.searchTable(place), tiles[i])) {
+        throw Error(file.path(), "offset " + std::to_string(place.offset + place.cell_bytes),
+                    "damaged: a search table cannot be decompressed");
+      }
+    });
+    search.search(PlaceIndex(std::move(tiles)), first_row, last_row);
+    first = next;
+  }
 }
 
 }  // namespace
 
 GlobalSearch::GlobalSearch(const NdtTarget& target, const GlobalSearchOptions& options) {
   options.check();
-  parts_ = std::make_shared<const Parts>(Parts{options, PlaceIndex(target)});
+  parts_ = std::make_shared<const Parts>(Parts{options, PlaceIndex(target), std::nullopt});
+}
+
+GlobalSearch::GlobalSearch(const LocalizationMap& map, const GlobalSearchOptions& options) {
+  options.check();
+  parts_ = std::make_shared<const Parts>(Parts{options, std::nullopt, map});
 }
 
 std::vector<PoseCandidate> GlobalSearch::candidates(const SourcePoints& source,
                                                     const std::optional<SearchRegion>& region, int threads) const {
-  const PlaceIndex& index = parts_->index;
   const ScanOutline outline = outlineOf(source, parts_->options.cells);
   const auto cell_count = static_cast<double>(outline.cells.size());
-  const int least_count = std::max(kLeastCount, static_cast<int>(parts_->options.least_share * cell_count));
-  const int worse = static_cast<int>(kWorseShare * cell_count);
-  if (outline.cells.size() < static_cast<std::size_t>(least_count)) return {};
+  if (outline.cells.size() < static_cast<std::size_t>(IndexSearch::leastCount(outline, parts_->options))) return {};
   const TurnedOutlines outlines = turned(outline.cells, parts_->headingsOf(region));
-
-  std::vector<std::size_t> searched;
-  for (std::size_t i = 0; i < index.standingTileCount(); ++i) {
-    if (!region || mayBeWithin(index.tiles()[i], *region)) searched.push_back(i);
+  IndexSearch search(outline, outlines, parts_->options, region, threads);
+  if (parts_->map) {
+    searchMap(parts_->map->file(), region, threads, search);
+  } else {
+    search.search(*parts_->index, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
   }
-  std::vector<std::vector<Place>> found(searched.size());
-  forEachChunk(threads, searched.size(), [&](std::size_t i, int) {
-    found[i] = TileSearch(index, searched[i], region, least_count, worse).search(outlines);
-  });
-  std::vector<Place> places;
-  for (const std::vector<Place>& of_tile : found) places.insert(places.end(), of_tile.begin(), of_tile.end());
-  std::sort(places.begin(), places.end(), isBetter);
+  const std::vector<Place> places = search.takePlaces();
 
   std::vector<PoseCandidate> candidates;
   for (const Place& place : places) {
     if (candidates.size() == parts_->options.candidates) break;
-    const PlaceIndex::Tile& tile = index.tiles()[place.tile];
-    const int x = place.column.x - tile.at.x * kPlaceTileSize, y = place.column.y - tile.at.y * kPlaceTileSize;
     PoseCandidate candidate;
     candidate.matched_share = place.count / cell_count;
     candidate.T_map_base.translation() << (place.column.x + 0.5) * kColumn_m, (place.column.y + 0.5) * kColumn_m,
-        static_cast<double>(tile.ground_m[static_cast<std::size_t>(y * kPlaceTileSize + x)]) + outline.base_height_m;
+        static_cast<double>(place.ground_m) + outline.base_height_m;
     candidate.T_map_base.linear() =
         rotationFromVector({0.0, 0.0, outlines.headings_rad[static_cast<std::size_t>(place.heading)]});
     const bool is_another = std::none_of(candidates.begin(), candidates.end(), [&](const PoseCandidate& better) {
@@ -234,6 +314,8 @@ std::vector<PoseCandidate> GlobalSearch::candidates(const SourcePoints& source,
   return candidates;
 }
 
-std::size_t GlobalSearch::memoryUsage() const { return parts_->index.tiles().capacity() * sizeof(PlaceIndex::Tile); }
+std::size_t GlobalSearch::memoryUsage() const {
+  return parts_->index ? parts_->index->tiles().capacity() * sizeof(PlaceIndex::Tile) : 0;
+}
 
 }  // namespace saw_ndt

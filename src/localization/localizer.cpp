@@ -65,7 +65,7 @@ void requireSegmentedAlike(const MapOrigin& origin, const LocalizerOptions& opti
   }
 }
 
-SourceAligner alignerTo(const NdtTarget& target, const LocalizerOptions& options) {
+const TiledTarget& checkedTarget(const TiledTarget& target, const LocalizerOptions& options) {
   if (options.method.segment && !target.labelled()) {
     throw std::invalid_argument("Localizer: method " + options.method.name +
                                 " needs a map with labels, and this one was built without");
@@ -75,13 +75,16 @@ SourceAligner alignerTo(const NdtTarget& target, const LocalizerOptions& options
                                 options.method.name + ": make it with LocalizationMethod::voxels");
   }
   requireSegmentedAlike(target.origin(), options);
-  return [target, alignment = withMethod(options).alignment, aligner = NdtAligner()](
-             const SourcePoints& source, const Eigen::Isometry3d& T_map_base_predicted) mutable {
-    return aligner.align(target, source, T_map_base_predicted, alignment);
-  };
+  return target;
 }
 
 }  // namespace
+
+ScanPreparationOptions internal::preparationFor(const TiledTarget& target, const LocalizerOptions& options) {
+  ScanPreparationOptions preparation = preparationOptions(options);
+  preparation.max_reach_m = target.reach();
+  return preparation;
+}
 
 void LocalizerOptions::check() const {
   method.check();
@@ -89,6 +92,7 @@ void LocalizerOptions::check() const {
   alignment.check();
   acceptance.check();
   global_search.check();
+  tiles.check();
   checkOption(scan_period_s >= 0.0 && std::isfinite(scan_period_s), "scan_period_s", scan_period_s, "0 or more");
   checkOption(search_budget_ms > 0.0, "search_budget_ms", search_budget_ms, "positive");
   preparationOptions(*this).check();
@@ -98,21 +102,25 @@ Localizer::Localizer(const WeightedVoxelMap& map, const LocalizerOptions& option
     : Localizer(NdtTarget(map, options.method.voxels, options.alignment.threads), options) {}
 
 Localizer::Localizer(const std::string& map_file, const LocalizerOptions& options)
-    : Localizer(NdtTarget::load(map_file, options.method.voxels, options.alignment.threads), options) {}
+    : Localizer(TiledTarget::open(map_file, options.method.voxels, options.tiles, options.alignment.threads), options) {
+}
 
 Localizer::Localizer(const NdtTarget& target, const LocalizerOptions& options)
+    : Localizer(TiledTarget(target), options) {}
+
+Localizer::Localizer(const TiledTarget& target, const LocalizerOptions& options)
     : options_(withMethod(options)),
-      preparation_(preparationOptions(options_)),
+      preparation_(preparationFor(target, options_)),
       prediction_(options.prediction),
-      finder_(std::make_unique<PoseFinder>(alignerTo(target, options_), target, options_)),
-      moving_(makeMoving(options_, &target)) {}
+      finder_(std::make_unique<PoseFinder>(checkedTarget(target, options_), options_)),
+      moving_(makeMoving(options_, true)) {}
 
 Localizer::Localizer(SourceAligner aligner, const LocalizerOptions& options)
     : options_(withMethod(options)),
       preparation_(preparationOptions(options_)),
       prediction_(options.prediction),
       finder_(std::make_unique<PoseFinder>(std::move(aligner), options_)),
-      moving_(makeMoving(options_, nullptr)) {}
+      moving_(makeMoving(options_, false)) {}
 
 // A scan on its way through localize().
 struct Localizer::ScanInWork {
@@ -125,8 +133,8 @@ struct Localizer::ScanInWork {
 
 // What is needed where the motion of the LiDAR skews scans.
 struct Localizer::Moving {
-  Moving(const LocalizerOptions& options, const NdtTarget* target) : motion(options.prediction, options.scan_period_s) {
-    if (target != nullptr) refinement.emplace(*target, options.alignment);
+  Moving(const LocalizerOptions& options, bool refines) : motion(options.prediction, options.scan_period_s) {
+    if (refines) refinement.emplace(options.alignment);
   }
 
   MotionKnowledge motion;
@@ -134,9 +142,9 @@ struct Localizer::Moving {
   std::optional<MotionRefinement> refinement;  // not with an aligner of another kind
 };
 
-std::unique_ptr<Localizer::Moving> Localizer::makeMoving(const LocalizerOptions& options, const NdtTarget* target) {
+std::unique_ptr<Localizer::Moving> Localizer::makeMoving(const LocalizerOptions& options, bool refines) {
   if (options.motion_compensation == MotionCompensation::OFF) return nullptr;
-  return std::make_unique<Moving>(options, target);
+  return std::make_unique<Moving>(options, refines);
 }
 
 // A search in a thread of its own.
@@ -162,6 +170,8 @@ const char* toString(SearchExtent extent) {
   return "unknown";
 }
 
+const TileLoads* Localizer::tileLoads() const { return finder_->tileLoads(); }
+
 void Localizer::setUnknownPose() {
   if (!finder_->canSearch()) throw std::logic_error("setUnknownPose: there is no search, or no target to search in");
   prediction_.resetUnknown();
@@ -171,6 +181,7 @@ void Localizer::setUnknownPose() {
 
 void Localizer::setInitialPose(const Eigen::Isometry3d& T_map_base) {
   prediction_.reset(T_map_base);
+  finder_->loadAhead(T_map_base, Eigen::Vector3d::Zero());
   if (moving_) moving_->motion.forget();
   if (ongoing_search_) ongoing_search_->outdated = true;
 }
@@ -278,7 +289,7 @@ std::optional<RefinedMotion> Localizer::refinedAtAnySpeed(const Eigen::Isometry3
     const AlignmentResult alignment = finder_->align(moving.source.compensatedBy(motion), start);
     if (!alignment.converged()) continue;
     start = alignment.T_map_source;
-    const auto refined = moving.refinement->refine(moving.source, start, motion, prior);
+    const auto refined = moving.refinement->refine(finder_->targetAt(start), moving.source, start, motion, prior);
     if (!refined) continue;
     const double fit = fitOf(finder_->align(moving.source.compensatedBy(refined->motion), refined->T_map_base));
     if (fit <= best_fit) continue;
@@ -303,7 +314,8 @@ PoseAttempt Localizer::refined(const PoseAttempt& found, const ScanPriors& prior
   const Eigen::Isometry3d& T_map_base_start = is_misled ? scan.predicted.T_map_base : found.alignment.T_map_source;
   const std::optional<RefinedMotion> refined =
       is_unknown ? refinedAtAnySpeed(T_map_base_start, prior)
-                 : moving.refinement->refine(moving.source, found.alignment.T_map_source, known, prior);
+                 : moving.refinement->refine(finder_->targetAt(found.alignment.T_map_source), moving.source,
+                                             found.alignment.T_map_source, known, prior);
   const bool is_other = refined && refined->significant &&
                         shiftBetween(refined->motion, known, moving.source.reach_s()) >= kNegligibleShift_m;
   if (!is_other) return found;
@@ -370,6 +382,7 @@ LocalizationResult Localizer::localize(const ScanView& scan, double stamp_s, con
     prediction_.reject(stamp_s, found.search == SearchExtent::EVERYWHERE);
   }
   result.track = prediction_.state();
+  finder_->loadAhead(result.T_map_base, result.T_map_base.linear() * result.track.velocity_base_mps);
   result.times.total_ms = work.since_start.milliseconds();
   return result;
 }

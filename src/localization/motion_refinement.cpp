@@ -105,8 +105,10 @@ void MotionRefinement::evaluate(const MotionPrior& prior, State& state) {
   state.curvature.bottomRightCorner<6, 6>().diagonal() += weights;
 }
 
-std::optional<RefinedMotion> MotionRefinement::refine(const MovingSource& source, const Eigen::Isometry3d& T_map_base,
-                                                      const ScanMotion& motion, const MotionPrior& prior) {
+std::optional<RefinedMotion> MotionRefinement::refine(const NdtTarget& target, const MovingSource& source,
+                                                      const Eigen::Isometry3d& T_map_base, const ScanMotion& motion,
+                                                      const MotionPrior& prior) {
+  target_ = target;
   divide(source);
   State best;
   best.T_map_base = T_map_base;

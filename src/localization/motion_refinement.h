@@ -44,14 +44,15 @@ struct RefinedMotion {
 class SAW_NDT_EXPORT MotionRefinement {
  public:
   /// @param options  of the alignments; weights and levels are theirs
-  MotionRefinement(NdtTarget target, const AlignmentOptions& options) : target_(std::move(target)), options_(options) {}
+  explicit MotionRefinement(const AlignmentOptions& options) : options_(options) {}
 
   /// @param source       with times
   /// @param T_map_base   to start from
   /// @param motion       likewise; taken as MotionPrior can tell it
   /// @return nothing where the scan meets no voxel
-  std::optional<RefinedMotion> refine(const MovingSource& source, const Eigen::Isometry3d& T_map_base,
-                                      const ScanMotion& motion, const MotionPrior& prior);
+  std::optional<RefinedMotion> refine(const NdtTarget& target, const MovingSource& source,
+                                      const Eigen::Isometry3d& T_map_base, const ScanMotion& motion,
+                                      const MotionPrior& prior);
 
  private:
   static constexpr std::size_t kParts = 12;
@@ -77,7 +78,7 @@ class SAW_NDT_EXPORT MotionRefinement {
   void divide(const MovingSource& moving);
   void evaluate(const MotionPrior& prior, State& state);
 
-  NdtTarget target_;
+  NdtTarget target_;  // of the scan in work
   AlignmentOptions options_;
   std::array<Part, kParts> parts_;
 };

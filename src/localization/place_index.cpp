@@ -202,13 +202,21 @@ PlaceIndex::PlaceIndex(const NdtTarget& target) {
       tile.ground_m[static_cast<std::size_t>(place)] = *ground.at(column);
     }
   }
-  // In an order that depends on where tiles are alone.
-  const auto has_standing = [](const Tile& tile) {
-    return std::any_of(tile.allowed.begin(), tile.allowed.end(), [](std::uint64_t row) { return row != 0; });
-  };
+  arrange();
+}
+
+PlaceIndex::PlaceIndex(std::vector<Tile> tiles) : tiles_(std::move(tiles)) { arrange(); }
+
+bool PlaceIndex::Tile::hasStanding() const {
+  return std::any_of(allowed.begin(), allowed.end(), [](std::uint64_t row) { return row != 0; });
+}
+
+// In an order that depends on where tiles are alone; with the first rows of the next tile repeated.
+void PlaceIndex::arrange() {
   std::sort(tiles_.begin(), tiles_.end(),
             [](const Tile& a, const Tile& b) { return std::pair(a.at.y, a.at.x) < std::pair(b.at.y, b.at.x); });
-  const auto others = std::stable_partition(tiles_.begin(), tiles_.end(), has_standing);
+  const auto others =
+      std::stable_partition(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return tile.hasStanding(); });
   standing_tile_count_ = static_cast<std::size_t>(others - tiles_.begin());
   tile_numbers_.clear();
   for (std::size_t i = 0; i < tiles_.size(); ++i) tile_numbers_.emplace(keyOf(tiles_[i].at.x, tiles_[i].at.y), i);

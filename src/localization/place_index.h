@@ -65,9 +65,13 @@ class PlaceIndex {
     std::array<std::uint64_t, kPlaceTileWords> words{};
     std::array<std::uint64_t, kPlaceTileSize> allowed{};  ///< a bit for each column in which a vehicle may stand
     std::array<float, kPlaceTileSize * kPlaceTileSize> ground_m{};  ///< its ground, row by row
+
+    bool hasStanding() const;  ///< whether a vehicle may stand anywhere
   };
 
   explicit PlaceIndex(const NdtTarget& target);
+  /// Of tiles of another index, each once, such as come from a localization map; all but their repeated rows are read.
+  explicit PlaceIndex(std::vector<Tile> tiles);
 
   /// Those in which a vehicle may stand come first.
   const std::vector<Tile>& tiles() const { return tiles_; }
@@ -77,6 +81,8 @@ class PlaceIndex {
   PlaceTables tablesAround(const Tile& tile) const;
 
  private:
+  void arrange();
+
   std::vector<Tile> tiles_;
   std::unordered_map<std::uint64_t, std::size_t> tile_numbers_;
   std::size_t standing_tile_count_ = 0;

@@ -78,10 +78,21 @@ PoseFinder::PoseFinder(SourceAligner aligner, const LocalizerOptions& options)
       min_advantage_sigmas_(options.acceptance.min_advantage_sigmas),
       threads_(options.alignment.threads) {}
 
-PoseFinder::PoseFinder(SourceAligner aligner, const NdtTarget& target, const LocalizerOptions& options)
-    : PoseFinder(std::move(aligner), options) {
+PoseFinder::PoseFinder(const TiledTarget& target, const LocalizerOptions& options)
+    : PoseFinder(SourceAligner(), options) {
+  alignment_ = options.alignment;
   target_ = target;
-  if (options.search) search_.emplace(target, options.global_search);
+  if (!options.search) return;
+  if (target.map()) {
+    search_.emplace(*target.map(), options.global_search);
+  } else {
+    search_.emplace(target_->at(Eigen::Vector3d::Zero(), 0.0), options.global_search);
+  }
+}
+
+AlignmentResult PoseFinder::align(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start) {
+  if (aligner_) return aligner_(source, T_map_base_start);
+  return ndt_aligner_.align(targetAt(T_map_base_start), source, T_map_base_start, alignment_);
 }
 
 // Little is held for sure along a free direction. It is held all the same where the alignment comes back from both
@@ -99,7 +110,7 @@ void PoseFinder::confirmFreeDirections(const SourcePoints& source, AlignmentResu
       Eigen::Isometry3d start = found;
       start.translation() += way_m * suspected.col(k).head<3>();
       start.linear() = rotationFromVector(way_m / kRotationArm_m * suspected.col(k).tail<3>()) * found.linear();
-      const AlignmentResult again = aligner_(source, start);
+      const AlignmentResult again = align(source, start);
       const double missed_m = inLengths(poseDifference(found, again.T_map_source)).norm();
       comes_back = again.converged() && missed_m < kBack_m;
     }
@@ -115,7 +126,7 @@ void PoseFinder::confirmFreeDirections(const SourcePoints& source, AlignmentResu
 PoseAttempt PoseFinder::attempt(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start,
                                 const PoseExpectation& expectation) {
   PoseAttempt result;
-  result.alignment = aligner_(source, T_map_base_start);
+  result.alignment = align(source, T_map_base_start);
   if (result.alignment.converged()) confirmFreeDirections(source, result.alignment);
   result.T_map_base =
       keptAlongFreeDirections(expectation.T_map_base, result.alignment.T_map_source, result.alignment.free_directions);
@@ -135,7 +146,8 @@ std::vector<Eigen::Isometry3d> PoseFinder::rivalsOf(const SourcePoints& source, 
   const bool is_expected = !expectation.vague && !expectation.unsure && found.alignment.free_directions.cols() == 0 &&
                            !judge_.isSurprising(found.alignment, found.T_map_base, expectation);
   std::vector<Eigen::Isometry3d> starts =
-      rivalStarts(*target_, source, T_map_found, way, expectation.search_radius_m, is_expected, threads_);
+      rivalStarts(targetAt(T_map_found, expectation.search_radius_m), source, T_map_found, way,
+                  expectation.search_radius_m, is_expected, threads_);
   if (expectation.any_heading) {
     for (const double turn_deg : {90.0, 180.0, 270.0}) {
       starts.push_back(T_map_found);
@@ -145,7 +157,7 @@ std::vector<Eigen::Isometry3d> PoseFinder::rivalsOf(const SourcePoints& source, 
   starts.insert(starts.end(), other_starts.begin(), other_starts.end());
   std::vector<Eigen::Isometry3d> rivals;
   for (const Eigen::Isometry3d& start : starts) {
-    const AlignmentResult rival = aligner_(source, start);
+    const AlignmentResult rival = align(source, start);
     if (rival.converged()) rivals.push_back(rival.T_map_source);
   }
   return rivals;
@@ -157,7 +169,11 @@ PoseAttempt PoseFinder::withoutRivals(const SourcePoints& source, const PoseAtte
   constexpr std::size_t kComparedPoints = 6000;
   if (!target_ || min_advantage_sigmas_ == 0.0) return found;
   const std::vector<Eigen::Isometry3d> rivals = rivalsOf(source, found, other_starts, expectation, track);
-  const FitComparison comparison(*target_, source, kComparedPoints);
+  double furthest_m = 0.0;
+  for (const Eigen::Isometry3d& rival : rivals) {
+    furthest_m = std::max(furthest_m, (rival.translation() - found.alignment.T_map_source.translation()).norm());
+  }
+  const FitComparison comparison(targetAt(found.alignment.T_map_source, furthest_m), source, kComparedPoints);
   PoseAttempt best = found;
   FitComparison::Fits of_best = comparison.fitsAt(best.alignment.T_map_source);
   std::vector<FitComparison::Fits> of_rivals;

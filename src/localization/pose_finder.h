@@ -7,7 +7,8 @@
 #include "saw_ndt/localization/global_search.h"
 #include "saw_ndt/localization/localizer.h"
 #include "saw_ndt/localization/pose_judge.h"
-#include "saw_ndt/map/ndt_target.h"
+#include "saw_ndt/map/tiled_target.h"
+#include "saw_ndt/registration/ndt_aligner.h"
 
 namespace saw_ndt::internal {
 
@@ -27,8 +28,20 @@ class SAW_NDT_EXPORT PoseFinder {
  public:
   /// Finds without a target: nothing but the aligner tells of poses.
   PoseFinder(SourceAligner aligner, const LocalizerOptions& options);
-  /// @param target  that of the aligner
-  PoseFinder(SourceAligner aligner, const NdtTarget& target, const LocalizerOptions& options);
+  /// Aligns to a target by the alignment of the options, and searches it.
+  PoseFinder(const TiledTarget& target, const LocalizerOptions& options);
+
+  /// What the scan is registered to at a pose. @pre there is a target
+  /// @param further_m  how far from there the scan may be taken to be as well
+  NdtTarget targetAt(const Eigen::Isometry3d& T_map_base, double further_m = 0.0) {
+    return target_->at(T_map_base.translation(), further_m > 0.0 ? target_->reach() + further_m : 0.0);
+  }
+  /// Prepares for scans to come.
+  void loadAhead(const Eigen::Isometry3d& T_map_base, const Eigen::Vector3d& velocity_mps) {
+    if (target_) target_->loadAhead(T_map_base.translation(), velocity_mps);
+  }
+  /// What became of loading tiles; null without a target.
+  const TileLoads* tileLoads() const { return target_ ? &target_->loads() : nullptr; }
 
   bool canSearch() const { return search_.has_value(); }
   /// Whether another place may tell more than what was found. Not where the scan fits as usual but does not say where
@@ -48,9 +61,7 @@ class SAW_NDT_EXPORT PoseFinder {
     return fromStarts(source, {T_map_base_start}, expectation, track);
   }
   /// An alignment alone.
-  AlignmentResult align(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start) {
-    return aligner_(source, T_map_base_start);
-  }
+  AlignmentResult align(const SourcePoints& source, const Eigen::Isometry3d& T_map_base_start);
 
   const PoseJudge& judge() const { return judge_; }
 
@@ -76,8 +87,10 @@ class SAW_NDT_EXPORT PoseFinder {
   PoseAttempt fromStarts(const SourcePoints& source, const std::vector<Eigen::Isometry3d>& starts,
                          const PoseExpectation* expectation, const TrackState& track);
 
-  SourceAligner aligner_;
-  std::optional<NdtTarget> target_;
+  SourceAligner aligner_;  // null: to the target
+  NdtAligner ndt_aligner_;
+  AlignmentOptions alignment_;
+  std::optional<TiledTarget> target_;
   std::optional<GlobalSearch> search_;
   PoseJudge judge_;
   double min_advantage_sigmas_;

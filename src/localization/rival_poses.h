@@ -35,7 +35,7 @@ class FitComparison {
   double advantage(const Fits& here, const Fits& there) const;
 
  private:
-  const NdtTarget& target_;
+  NdtTarget target_;
   std::vector<Eigen::Vector3d> points_;
   std::vector<std::size_t> cell_of_point_;
   std::size_t cell_count_ = 0;

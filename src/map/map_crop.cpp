@@ -1,24 +1,51 @@
 #include "saw_ndt/map/map_crop.h"
 
-#include <cmath>
-#include <memory>
-#include <stdexcept>
-#include <string>
 #include <utility>
+#include <vector>
 
-#include "map/polyline_tree.h"
+#include "map/map_file.h"
+#include "map/map_file_writer.h"
+#include "map/region_tiles.h"
+#include "map/sums_statistics.h"
+#include "map/tile_batches.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
 namespace {
 
-void requireFinite(const std::vector<Eigen::Vector2d>& points_m, const char* name) {
-  for (std::size_t i = 0; i < points_m.size(); ++i) {
-    if (!points_m[i].allFinite()) {
-      throw std::invalid_argument(std::string(name) + "[" + std::to_string(i) + "] is not finite");
-    }
-  }
+using namespace internal;
+
+struct NoScratch {};
+
+// The tiles of which some voxel is kept. Hardly more than one entry of most of them has to be looked at.
+std::vector<RegionTile> tilesKept(const MapFileReader& reader, const MapRegion& region, int threads) {
+  std::vector<RegionTile> kept;
+  RegionTiles tiles(reader, region);
+  forEachTileInBatches<RegionTile, NoScratch, char>(
+      threads, [&tiles](RegionTile& tile) { return tiles.next(tile); },
+      [&](const RegionTile& tile, NoScratch&, char& is_kept) {
+        const MapTileRecord record = reader.front().tile(tile.place);
+        is_kept = 0;
+        for (std::uint64_t i = 0; i < record.entry_count && is_kept == 0; ++i) {
+          is_kept = region(centreOf(reader.voxelOf(record, i), reader.origin().resolution_m)) ? 1 : 0;
+        }
+        reader.forget(record);
+      },
+      [&](const RegionTile& tile, char is_kept) {
+        if (is_kept != 0) kept.push_back(tile);
+      });
+  return kept;
 }
+
+struct CropScratch {
+  std::vector<LabelledVoxelSums> whole, kept;
+};
+
+struct CroppedTile {
+  MapTileRecord record;
+  std::vector<char> bytes;
+  std::uint64_t voxel_count = 0, point_count = 0;
+};
 
 }  // namespace
 
@@ -26,47 +53,49 @@ WeightedVoxelMap cropMap(const WeightedVoxelMap& map, const MapRegion& region) {
   std::vector<LabelledVoxelSums> kept;
   MapOrigin origin = map.origin();
   origin.point_count = 0;
-  bool belongs = false;
-  const LabelledVoxelSums* before = nullptr;
-  for (const LabelledVoxelSums& entry : map.entries()) {
-    if (before == nullptr || entry.voxel != before->voxel) {
-      belongs = region((entry.voxel.cast<double>().array() + 0.5).matrix() * map.resolution());
-    }
-    before = &entry;
-    if (!belongs) continue;
+  const LabelledVoxelSums* const first = map.entries().data();
+  forEachEntryIn(region, map.resolution(), first, first + map.entries().size(), [&](const LabelledVoxelSums& entry) {
     kept.push_back(entry);
     origin.point_count += entry.sums.count;
-  }
+  });
   return {origin, std::move(kept)};
 }
 
-MapRegion boxRegion(const Eigen::Vector3d& least_m, const Eigen::Vector3d& greatest_m) {
-  const char* const names[] = {"least_m.x", "least_m.y", "least_m.z"};
-  for (int axis = 0; axis < 3; ++axis) {
-    checkOption(least_m[axis] < greatest_m[axis], names[axis], least_m[axis],
-                ("below the greatest, " + std::to_string(greatest_m[axis])).c_str());
-  }
-  return [least_m, greatest_m](const Eigen::Vector3d& position_m) {
-    return (position_m.array() >= least_m.array()).all() && (position_m.array() < greatest_m.array()).all();
-  };
-}
-
-MapRegion polygonRegion(const std::vector<Eigen::Vector2d>& vertices_m) {
-  checkOption(vertices_m.size() >= 3, "vertices_m.size()", vertices_m.size(), "3 or more");
-  requireFinite(vertices_m, "vertices_m");
-  std::vector<Eigen::Vector2d> closed = vertices_m;
-  closed.push_back(vertices_m.front());
-  const auto edges = std::make_shared<const internal::PolylineTree>(std::move(closed));
-  return
-      [edges](const Eigen::Vector3d& position_m) { return edges->crossingsToTheRight(position_m.head<2>()) % 2 == 1; };
-}
-
-MapRegion regionAround(const std::vector<Eigen::Vector2d>& points_m, double radius_m) {
-  checkOption(!points_m.empty(), "points_m.size()", points_m.size(), "1 or more");
-  checkOption(radius_m > 0.0 && std::isfinite(radius_m), "radius_m", radius_m, "positive");
-  requireFinite(points_m, "points_m");
-  const auto line = std::make_shared<const internal::PolylineTree>(points_m);
-  return [line, radius_m](const Eigen::Vector3d& position_m) { return line->isWithin(position_m.head<2>(), radius_m); };
+CroppedMap cropMapFile(const std::string& path, const MapRegion& region, const std::string& out_path, int threads) {
+  MapFileReader reader(path);
+  CroppedMap written;
+  written.origin = reader.origin();
+  written.point_count_before = written.origin.point_count;
+  written.origin.point_count = 0;
+  const std::vector<RegionTile> tiles = tilesKept(reader, region, threads);
+  if (tiles.empty()) throw Error(path, "", "none of its voxels lies there: nothing is left");
+  MapFileWriter writer(out_path, written.origin, tiles.size());
+  auto next = tiles.begin();
+  forEachTileInBatches<RegionTile, CropScratch, CroppedTile>(
+      threads,
+      [&](RegionTile& tile) {
+        if (next == tiles.end()) return false;
+        tile = *next++;
+        return true;
+      },
+      [&](const RegionTile& tile, CropScratch& scratch, CroppedTile& cropped) {
+        decodeTileIn(reader, tile.place, region, scratch.whole, scratch.kept);
+        const LabelledVoxelSums* const first = scratch.kept.data();
+        const LabelledVoxelSums* const last = first + scratch.kept.size();
+        cropped.record = encodeTile(first, last, cropped.bytes);
+        cropped.voxel_count = voxelCountOf(first, last, written.origin.resolution_m);
+        cropped.point_count = pointCountOf(first, last);
+      },
+      [&](const RegionTile&, const CroppedTile& cropped) {
+        writer.add(cropped.record, cropped.bytes);
+        written.voxel_count += cropped.voxel_count;
+        written.entry_count += cropped.record.entry_count;
+        written.origin.point_count += cropped.point_count;
+      });
+  writer.commit(written.origin.point_count);
+  written.tile_count = tiles.size();
+  written.file_bytes = writer.size();
+  return written;
 }
 
 }  // namespace saw_ndt

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "map/map_file_layout.h"
 #include "map/map_metadata.h"
@@ -42,6 +43,36 @@ std::string encodeDirectory(const std::vector<MapTileRecord>& tiles) {
   return bytes;
 }
 
+// @param front_offset  where metadata and directory stand that were appended; nothing: behind the header
+std::string encodeHeader(const MapOrigin& origin, const std::vector<MapTileRecord>& tiles, const std::string& metadata,
+                         const std::string& directory, std::optional<std::uint64_t> front_offset) {
+  MapHeaderLayout header;
+  std::memset(&header, 0, sizeof header);
+  std::memcpy(header.magic, kMapMagic, sizeof header.magic);
+  header.version = front_offset ? kUpdatedMapVersion : kMapVersion;
+  header.header_bytes = static_cast<std::uint32_t>(sizeof header);
+  header.resolution_m = origin.resolution_m;
+  header.tile_size = static_cast<std::uint32_t>(kTileSize);
+  header.flags = origin.labelled ? kLabelledFlag : std::uint32_t{0};
+  header.scan_count = origin.scan_count;
+  header.point_count = origin.point_count;
+  std::uint64_t entry_count = 0;
+  for (const MapTileRecord& tile : tiles) entry_count += tile.entry_count;
+  header.entry_count = entry_count;
+  header.tile_count = tiles.size();
+  header.directory_checksum = checksumOf(directory.data(), directory.size());
+  header.metadata_bytes = static_cast<std::uint32_t>(metadata.size());
+  header.metadata_checksum = checksumOf(metadata.data(), metadata.size());
+  if (front_offset) {
+    header.front_offset = *front_offset;
+    header.end_offset = *front_offset + metadata.size() + directory.size();
+  }
+  header.checksum = checksumOf(&header, offsetof(MapHeaderLayout, checksum));
+  std::string bytes;
+  append(header, bytes);
+  return bytes;
+}
+
 }  // namespace
 
 MapTileRecord encodeTile(const LabelledVoxelSums* first, const LabelledVoxelSums* last, std::vector<char>& bytes) {
@@ -58,32 +89,39 @@ MapTileRecord encodeTile(const LabelledVoxelSums* first, const LabelledVoxelSums
   return tile;
 }
 
+LabelledVoxelSums decodeEntry(const MapEntryLayout& layout, const Eigen::Vector3i& tile) {
+  LabelledVoxelSums entry;
+  for (int axis = 0; axis < 3; ++axis) entry.voxel[axis] = tile[axis] * kTileSize + layout.place[axis];
+  entry.label = static_cast<StructuralLabel>(layout.label);
+  entry.sums.count = layout.count.value();
+  entry.scan_count = layout.scan_count.value();
+  for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) entry.sums.sum[i] = layout.sum[i].value();
+  for (std::size_t i = 0; i < entry.sums.product.size(); ++i) entry.sums.product[i] = layout.product[i].value();
+  return entry;
+}
+
 std::uint64_t bytesOfEntries(std::uint64_t entry_count) { return entry_count * sizeof(MapEntryLayout); }
 
 std::string encodeFront(const MapOrigin& origin, const std::vector<MapTileRecord>& tiles) {
   const std::string metadata = metadataText(origin), directory = encodeDirectory(tiles);
-  MapHeaderLayout header;
-  std::memset(&header, 0, sizeof header);
-  std::memcpy(header.magic, kMapMagic, sizeof header.magic);
-  header.version = kMapVersion;
-  header.header_bytes = static_cast<std::uint32_t>(sizeof header);
-  header.resolution_m = origin.resolution_m;
-  header.tile_size = static_cast<std::uint32_t>(kTileSize);
-  header.flags = origin.labelled ? kLabelledFlag : std::uint32_t{0};
-  header.scan_count = origin.scan_count;
-  header.point_count = origin.point_count;
-  std::uint64_t entry_count = 0;
-  for (const MapTileRecord& tile : tiles) entry_count += tile.entry_count;
-  header.entry_count = entry_count;
-  header.tile_count = tiles.size();
-  header.directory_checksum = checksumOf(directory.data(), directory.size());
-  header.metadata_bytes = static_cast<std::uint32_t>(metadata.size());
-  header.metadata_checksum = checksumOf(metadata.data(), metadata.size());
-  header.checksum = checksumOf(&header, offsetof(MapHeaderLayout, checksum));
-  std::string front;
-  front.reserve(sizeof header + metadata.size() + directory.size());
-  append(header, front);
-  return front.append(metadata).append(directory);
+  return encodeHeader(origin, tiles, metadata, directory, std::nullopt) + metadata + directory;
+}
+
+MapSwitch encodeSwitch(const MapOrigin& origin, const std::vector<MapTileRecord>& tiles, std::uint64_t front_offset) {
+  const std::string metadata = metadataText(origin), directory = encodeDirectory(tiles);
+  return {encodeHeader(origin, tiles, metadata, directory, front_offset), metadata + directory};
+}
+
+std::string asUpdatedHeader(const std::string& header, std::uint64_t end_offset) {
+  MapHeaderLayout layout;
+  std::memcpy(&layout, header.data(), sizeof layout);
+  layout.version = kUpdatedMapVersion;
+  layout.front_offset = sizeof layout;
+  layout.end_offset = end_offset;
+  layout.checksum = checksumOf(&layout, offsetof(MapHeaderLayout, checksum));
+  std::string bytes;
+  append(layout, bytes);
+  return bytes;
 }
 
 std::uint64_t bytesOfFront(const MapOrigin& origin, std::uint64_t tile_count) {

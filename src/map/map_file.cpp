@@ -1,26 +1,21 @@
 #include "map/map_file.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
 
+#include "map/map_encoding.h"
 #include "map/map_file_layout.h"
-#include "map/map_metadata.h"
-#include "saw_ndt/common/error.h"
 
 namespace saw_ndt::internal {
 namespace {
 
 constexpr std::size_t kEntryBytes = sizeof(MapEntryLayout);
 constexpr std::uint64_t kMostEntriesPerPart = 8192;
-constexpr std::uint64_t kMostBytesPerPiece = std::uint64_t{4} << 20U;
+constexpr std::uint64_t kLeastBytesPerPiece = std::uint64_t{4} << 20U;
 
-MapEntryLayout entryAt(const MapPart& part, std::size_t i) {
+MapEntryLayout entryAt(const char* bytes, std::uint64_t i) {
   MapEntryLayout layout;
-  std::memcpy(&layout, part.bytes + i * kEntryBytes, kEntryBytes);
+  std::memcpy(&layout, bytes + i * kEntryBytes, kEntryBytes);
   return layout;
 }
 
@@ -44,234 +39,83 @@ bool canBeSums(const VoxelSums& sums) {
 
 bool decoded(const MapEntryLayout& layout, const Eigen::Vector3i& tile, LabelledVoxelSums& entry) {
   bool valid = layout.label < kStructuralLabelCount;
-  for (int axis = 0; axis < 3; ++axis) {
-    valid = valid && layout.place[axis] < kTileSize;
-    entry.voxel[axis] = tile[axis] * kTileSize + layout.place[axis];
-  }
-  entry.label = static_cast<StructuralLabel>(layout.label);
-  entry.sums.count = layout.count.value();
-  entry.scan_count = layout.scan_count.value();
-  for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) entry.sums.sum[i] = layout.sum[i].value();
-  for (std::size_t i = 0; i < entry.sums.product.size(); ++i) entry.sums.product[i] = layout.product[i].value();
+  for (int axis = 0; axis < 3; ++axis) valid = valid && layout.place[axis] < kTileSize;
+  entry = decodeEntry(layout, tile);
   return valid && canBeSums(entry.sums);
 }
 
 }  // namespace
 
-MapFileReader::MapFileReader(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw Error(path, "", "is a folder, not a map file");
-  if (!stream_) throw Error(path, "", std::string("cannot be opened: ") + std::strerror(errno));
-  size_ = std::filesystem::file_size(path, error);
-  if (error) throw Error(path, "", error.message());
-  readMagicAndVersion();
-  readHeader();
-}
+MapFileReader::MapFileReader(const std::string& path) : path_(path), file_(openMapFile(path)), front_(path, file_) {}
 
-void MapFileReader::fail(std::uint64_t offset, const std::string& reason) const {
-  throw Error(path_, "offset " + std::to_string(offset), reason);
-}
-
-void MapFileReader::read(std::uint64_t offset, std::size_t count, std::vector<char>& bytes) {
-  if (offset > size_ || count > size_ - offset) {
-    fail(size_, "truncated: " + std::to_string(offset + count) + " bytes expected");
-  }
-  bytes.resize(count);
-  stream_.seekg(static_cast<std::streamoff>(offset));
-  if (!stream_.read(bytes.data(), static_cast<std::streamsize>(count))) fail(offset, "cannot be read");
-}
-
-template <typename Layout>
-Layout MapFileReader::read(std::uint64_t offset) {
-  std::vector<char> bytes;
-  read(offset, sizeof(Layout), bytes);
-  Layout layout;
-  std::memcpy(&layout, bytes.data(), sizeof(Layout));
-  return layout;
-}
-
-void MapFileReader::readMagicAndVersion() {
-  constexpr std::size_t kMagicSize = sizeof kMapMagic - 1;
-  if (size_ < kMagicSize) fail(0, "not a saw_ndt map: too short");
-  std::vector<char> magic;
-  read(0, kMagicSize, magic);
-  if (std::memcmp(magic.data(), kMapMagic, kMagicSize) != 0) fail(0, "not a saw_ndt map");
-  version_ = read<boost::endian::little_uint32_buf_t>(kMagicSize).value();
-  if (version_ < kFirstMapVersion || version_ > kMapVersion) {
-    fail(kMagicSize, "map version " + std::to_string(version_) + ", this program reads versions " +
-                         std::to_string(kFirstMapVersion) + " to " + std::to_string(kMapVersion));
-  }
-}
-
-void MapFileReader::readHeader() {
-  const auto header = read<MapHeaderLayout>(0);
-  if (header.checksum.value() != checksumOf(&header, offsetof(MapHeaderLayout, checksum))) {
-    fail(offsetof(MapHeaderLayout, checksum), "damaged: the header's checksum does not match");
-  }
-  if (header.header_bytes.value() != sizeof header || header.tile_size.value() != kTileSize ||
-      header.flags.value() > kLabelledFlag) {
-    fail(offsetof(MapHeaderLayout, header_bytes), "damaged: the header states an unknown layout");
-  }
-  origin_.resolution_m = header.resolution_m.value();
-  if (!(origin_.resolution_m > 0.0) || !std::isfinite(origin_.resolution_m)) {
-    fail(offsetof(MapHeaderLayout, resolution_m), "damaged: the resolution is not a positive number");
-  }
-  origin_.labelled = header.flags.value() == kLabelledFlag;
-  origin_.scan_count = header.scan_count.value();
-  origin_.point_count = header.point_count.value();
-  entry_count_ = header.entry_count.value();
-  const std::uint64_t tile_count = header.tile_count.value();
-  const std::uint32_t metadata_bytes = version_ == kFirstMapVersion ? 0 : header.metadata_bytes.value();
-  const std::uint64_t body = size_ - sizeof header;
-  if (metadata_bytes > body || tile_count > (body - metadata_bytes) / sizeof(MapTileLayout) ||
-      entry_count_ > body / kEntryBytes ||
-      metadata_bytes + tile_count * sizeof(MapTileLayout) + entry_count_ * kEntryBytes != body) {
-    fail(size_, "truncated or damaged: " + std::to_string(metadata_bytes) + " bytes of metadata, " +
-                    std::to_string(tile_count) + " tiles and " + std::to_string(entry_count_) +
-                    " entries do not make this size");
-  }
-  if (version_ != kFirstMapVersion) readMetadata(metadata_bytes, header.metadata_checksum.value());
-  directory_offset_ = sizeof header + metadata_bytes;
-  readDirectory(tile_count, header.directory_checksum.value());
-}
-
-void MapFileReader::readMetadata(std::uint32_t size, std::uint32_t checksum) {
-  constexpr std::uint64_t kOffset = sizeof(MapHeaderLayout);
-  std::vector<char> bytes;
-  read(kOffset, size, bytes);
-  if (checksumOf(bytes.data(), bytes.size()) != checksum) {
-    fail(kOffset, "damaged: the metadata's checksum does not match");
-  }
-  if (const auto fault = internal::readMetadata({bytes.data(), bytes.size()}, origin_)) {
-    fail(kOffset + fault->offset, fault->reason);
-  }
-}
-
-void MapFileReader::readDirectory(std::uint64_t tile_count, std::uint32_t checksum) {
-  std::vector<char> bytes;
-  read(directory_offset_, tile_count * sizeof(MapTileLayout), bytes);
-  if (checksumOf(bytes.data(), bytes.size()) != checksum) {
-    fail(directory_offset_, "damaged: the directory's checksum does not match");
-  }
-  tiles_.resize(tile_count);
-  std::uint64_t offset = directory_offset_ + bytes.size(), entry_count = 0;
-  for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    MapTileLayout layout;
-    std::memcpy(&layout, bytes.data() + i * sizeof layout, sizeof layout);
-    Tile& tile = tiles_[i];
-    for (int axis = 0; axis < 3; ++axis) tile.coordinate[axis] = layout.coordinate[axis].value();
-    tile.checksum = layout.checksum.value();
-    tile.entry_count = layout.entry_count.value();
-    tile.offset = layout.offset.value();
-    const std::uint64_t record = directory_offset_ + i * sizeof layout;
-    constexpr int kLimit = 1 << (31 - kTileBits);
-    if ((tile.coordinate.array() < -kLimit).any() || (tile.coordinate.array() >= kLimit).any()) {
-      fail(record, "damaged: a tile lies outside the coordinates that a map can hold");
-    }
-    const auto by_z_y_x = [](const Tile& t) { return Eigen::Vector3i(t.coordinate.reverse()); };
-    if (tile.offset != offset || tile.entry_count > (size_ - offset) / kEntryBytes) {
-      fail(record, "damaged: a tile does not follow the one before it");
-    }
-    if (i > 0) {
-      const Eigen::Vector3i before = by_z_y_x(tiles_[i - 1]), here = by_z_y_x(tile);
-      if (!std::lexicographical_compare(before.data(), before.data() + 3, here.data(), here.data() + 3)) {
-        fail(record, "damaged: a tile is out of order");
-      }
-    }
-    offset += tile.entry_count * kEntryBytes;
-    entry_count += tile.entry_count;
-  }
-  if (entry_count != entry_count_) {
-    fail(directory_offset_, "damaged: the directory and the header disagree on the number of entries");
-  }
-}
-
-std::uint64_t MapFileReader::endOfNextPiece() const {
-  const std::uint64_t begin = tiles_[next_tile_].offset + entries_of_tile_read_ * kEntryBytes;
-  std::uint64_t end = begin, read = entries_of_tile_read_;
-  for (std::size_t t = next_tile_; t < tiles_.size();) {
-    const std::uint64_t count = std::min(tiles_[t].entry_count - read, kMostEntriesPerPart);
-    if (end > begin && end + count * kEntryBytes - begin > kMostBytesPerPiece) break;
-    end += count * kEntryBytes;
-    read += count;
-    if (read == tiles_[t].entry_count) {
-      read = 0;
-      ++t;
-    }
-  }
-  return end;
-}
+std::string MapFileReader::header() const { return {file_.data(), sizeof(MapHeaderLayout)}; }
 
 bool MapFileReader::readPiece(MapPiece& piece) {
+  for (const MapPart& part : piece.parts) file_.forget(part.offset, part.entry_count * kEntryBytes);
   piece.parts.clear();
-  while (next_tile_ < tiles_.size() && tiles_[next_tile_].entry_count == 0) ++next_tile_;
-  if (next_tile_ == tiles_.size()) {
-    checkEnd();
-    return false;
-  }
-  const std::uint64_t begin = tiles_[next_tile_].offset + entries_of_tile_read_ * kEntryBytes;
-  const std::uint64_t end = endOfNextPiece();
-  read(begin, end - begin, piece.bytes);
-  for (std::uint64_t offset = begin; offset < end;) {
-    const Tile& tile = tiles_[next_tile_];
-    const std::uint64_t left = tile.entry_count - entries_of_tile_read_;
-    MapPart part;
-    part.tile = next_tile_;
-    part.offset = offset;
-    part.bytes = piece.bytes.data() + (offset - begin);
-    part.entry_count = std::min({left, kMostEntriesPerPart, (end - offset) / kEntryBytes});
-    part.whole_tile = part.entry_count == tile.entry_count;
-    if (part.entry_count < left) {
-      // The last voxel may go on behind the part: it is left to the next one.
-      const std::uint32_t last = entryAt(part, part.entry_count - 1).order() >> 8U;
-      std::size_t count = part.entry_count;
-      while (count > 0 && entryAt(part, count - 1).order() >> 8U == last) --count;
-      if (count == 0) {
-        if (offset > begin) break;
-        fail(offset, "damaged: a voxel has more labels than there are");
-      }
-      part.entry_count = count;
-    }
+  for (std::uint64_t bytes = 0; bytes < kLeastBytesPerPiece;) {
+    while (next_tile_ < tileCount() && front_.tile(next_tile_).entry_count == 0) ++next_tile_;
+    if (next_tile_ == tileCount()) break;
+    const MapPart part = nextPart();
     if (!part.whole_tile) continueTile(part);
     entries_of_tile_read_ += part.entry_count;
-    offset += part.entry_count * kEntryBytes;
-    if (entries_of_tile_read_ == tile.entry_count) {
+    bytes += part.entry_count * kEntryBytes;
+    if (entries_of_tile_read_ == front_.tile(next_tile_).entry_count) {
       entries_of_tile_read_ = 0;
-      do ++next_tile_;
-      while (next_tile_ < tiles_.size() && tiles_[next_tile_].entry_count == 0);
+      ++next_tile_;
     }
     piece.parts.push_back(part);
   }
-  return true;
+  if (piece.parts.empty()) checkEnd();
+  return !piece.parts.empty();
+}
+
+MapPart MapFileReader::nextPart() const {
+  const MapTileRecord tile = front_.tile(next_tile_);
+  const std::uint64_t left = tile.entry_count - entries_of_tile_read_;
+  MapPart part;
+  part.tile = next_tile_;
+  part.offset = tile.offset + entries_of_tile_read_ * kEntryBytes;
+  part.entry_count = std::min(left, kMostEntriesPerPart);
+  part.whole_tile = part.entry_count == tile.entry_count;
+  if (part.entry_count == left) return part;
+  // The last voxel may go on behind the part: it is left to the next one.
+  const char* const bytes = file_.data() + part.offset;
+  const std::uint32_t last = entryAt(bytes, part.entry_count - 1).order() >> 8U;
+  while (part.entry_count > 0 && entryAt(bytes, part.entry_count - 1).order() >> 8U == last) --part.entry_count;
+  if (part.entry_count == 0) fail(part.offset, "damaged: a voxel has more labels than there are");
+  return part;
 }
 
 // Checks what no part of a tile can tell alone.
 void MapFileReader::continueTile(const MapPart& part) {
-  const Tile& tile = tiles_[part.tile];
+  const MapTileRecord tile = front_.tile(part.tile);
+  const char* const bytes = file_.data() + part.offset;
   const bool first = entries_of_tile_read_ == 0;
-  checksum_of_tile_ = checksumOf(part.bytes, part.entry_count * kEntryBytes, first ? 0 : checksum_of_tile_);
-  if (!first && entryAt(part, 0).order() <= last_place_in_tile_) {
+  checksum_of_tile_ = checksumOf(bytes, part.entry_count * kEntryBytes, first ? 0 : checksum_of_tile_);
+  if (!first && entryAt(bytes, 0).order() <= last_place_in_tile_) {
     fail(part.offset, "damaged: an entry is out of range or out of order");
   }
-  last_place_in_tile_ = entryAt(part, part.entry_count - 1).order();
+  last_place_in_tile_ = entryAt(bytes, part.entry_count - 1).order();
   if (entries_of_tile_read_ + part.entry_count == tile.entry_count && checksum_of_tile_ != tile.checksum) {
     fail(tile.offset, "damaged: the checksum of a tile does not match");
   }
 }
 
 void MapFileReader::decode(const MapPart& part, std::vector<LabelledVoxelSums>& entries) {
-  const Tile& tile = tiles_[part.tile];
-  if (part.whole_tile && checksumOf(part.bytes, part.entry_count * kEntryBytes) != tile.checksum) {
+  const MapTileRecord tile = front_.tile(part.tile);
+  const char* const bytes = file_.data() + part.offset;
+  if (part.whole_tile && checksumOf(bytes, part.entry_count * kEntryBytes) != tile.checksum) {
     fail(part.offset, "damaged: the checksum of a tile does not match");
   }
   entries.resize(part.entry_count);
+  const std::uint64_t most_scans = front_.version() < kFirstVersionWithScans ? 0 : origin().scan_count;
   std::uint64_t points = 0;
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < part.entry_count; ++i) {
-    const MapEntryLayout layout = entryAt(part, i);
-    if (!decoded(layout, tile.coordinate, entries[i]) || entries[i].sums.count > origin_.point_count ||
-        entries[i].scan_count > (version_ < kFirstVersionWithScans ? 0 : origin_.scan_count) ||
-        (i > 0 && layout.order() <= before)) {
+    const MapEntryLayout layout = entryAt(bytes, i);
+    if (!decoded(layout, tile.coordinate, entries[i]) || entries[i].sums.count > origin().point_count ||
+        entries[i].scan_count > most_scans || (i > 0 && layout.order() <= before)) {
       fail(part.offset + i * kEntryBytes, "damaged: an entry is out of range or out of order");
     }
     before = layout.order();
@@ -280,9 +124,23 @@ void MapFileReader::decode(const MapPart& part, std::vector<LabelledVoxelSums>& 
   points_ += points;
 }
 
+void MapFileReader::decodeTile(std::uint64_t tile, std::vector<LabelledVoxelSums>& entries) {
+  const MapTileRecord record = front_.tile(tile);
+  decode({tile, true, record.offset, record.entry_count}, entries);
+}
+
+VoxelCoordinate MapFileReader::voxelOf(const MapTileRecord& tile, std::uint64_t entry) const {
+  const MapEntryLayout layout = entryAt(bytesOf(tile), entry);
+  return tile.coordinate * kTileSize + VoxelCoordinate(layout.place[0], layout.place[1], layout.place[2]);
+}
+
+void MapFileReader::forget(const MapTileRecord& tile) const {
+  file_.forget(tile.offset, tile.entry_count * kEntryBytes);
+}
+
 void MapFileReader::checkEnd() const {
-  if (points_ != origin_.point_count) {
-    fail(directory_offset_, "damaged: the entries and the header disagree on the number of points");
+  if (points_ != origin().point_count) {
+    fail(front_.offsetOfRecord(0), "damaged: the entries and the header disagree on the number of points");
   }
 }
 

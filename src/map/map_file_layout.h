@@ -13,7 +13,8 @@ namespace saw_ndt::internal {
 // What map_file.h describes, byte for byte.
 
 constexpr char kMapMagic[9] = "SAWNDTM\n";
-constexpr std::uint32_t kMapVersion = 3;
+constexpr std::uint32_t kMapVersion = 3;         // of new files
+constexpr std::uint32_t kUpdatedMapVersion = 4;  // of those that were updated in place
 constexpr std::uint32_t kFirstMapVersion = 1;
 constexpr std::uint32_t kFirstVersionWithScans = 3;
 constexpr std::uint32_t kLabelledFlag = 1;
@@ -32,7 +33,8 @@ struct MapHeaderLayout {
   boost::endian::little_uint32_buf_t directory_checksum;
   boost::endian::little_uint32_buf_t metadata_bytes;
   boost::endian::little_uint32_buf_t metadata_checksum;
-  char reserved[16];
+  boost::endian::little_uint64_buf_t front_offset;  // zero before version 4, as is the next one
+  boost::endian::little_uint64_buf_t end_offset;
   boost::endian::little_uint32_buf_t checksum;
 };
 static_assert(sizeof(MapHeaderLayout) == 96);

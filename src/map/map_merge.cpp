@@ -1,54 +1,48 @@
 #include "saw_ndt/map/map_merge.h"
 
-#include <filesystem>
-#include <map>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
-#include "map/map_file.h"
-#include "saw_ndt/common/error.h"
-#include "saw_ndt/map/weighted_map_builder.h"
+#include "map/map_file_writer.h"
+#include "map/tile_merge.h"
 
 namespace saw_ndt {
+
+using namespace internal;
+
 namespace {
 
-void requireDifferentFiles(const std::vector<std::string>& paths) {
-  std::map<std::filesystem::path, std::string> met;
-  for (const std::string& path : paths) {
-    std::error_code error;
-    const std::filesystem::path canonical = std::filesystem::canonical(path, error);
-    if (error) throw Error(path, "", error.message());
-    const auto [other, is_new] = met.emplace(canonical, path);
-    if (!is_new) {
-      throw Error(path, "",
-                  "is given twice" + (other->second == path ? "" : ", also as " + other->second) +
-                      ": its scans would count twice");
-    }
-  }
-}
-
-void merge(const WeightedVoxelMap& map, const std::string& path, const std::string& first, WeightedMapBuilder& into) {
-  try {
-    into.merge(map);
-  } catch (const std::invalid_argument& error) {
-    throw Error(path, "", "does not merge with " + first + ": " + error.what());
-  }
+void requireSome(const std::vector<std::string>& paths) {
+  if (paths.empty()) throw std::invalid_argument("paths: no map to merge");
 }
 
 }  // namespace
 
-WeightedVoxelMap mergeMapFiles(const std::vector<std::string>& paths) {
-  if (paths.empty()) throw std::invalid_argument("paths: no map to merge");
-  requireDifferentFiles(paths);
-  std::vector<MapOrigin> origins;
-  for (const std::string& path : paths) origins.push_back(internal::MapFileReader(path).origin());
-  WeightedMapBuilder builder(origins.front().resolution_m, origins.front().segmentation);
-  // What differs is found out before the long work.
-  WeightedMapBuilder trial = builder;
-  for (std::size_t i = 0; i < paths.size(); ++i) merge({origins[i], {}}, paths[i], paths.front(), trial);
-  for (const std::string& path : paths) merge(WeightedVoxelMap::load(path), path, paths.front(), builder);
-  return std::move(builder).build();
+WeightedVoxelMap mergeMapFiles(const std::vector<std::string>& paths, int threads) {
+  requireSome(paths);
+  TileMerge files(paths);
+  std::vector<LabelledVoxelSums> entries;
+  files.mergeTiles(false, false, threads, [&entries](const TileSources&, const MergedTile& tile) {
+    entries.insert(entries.end(), tile.entries.begin(), tile.entries.end());
+  });
+  return {files.origin(), std::move(entries)};
+}
+
+WrittenMap mergeMapFiles(const std::vector<std::string>& paths, const std::string& out_path, int threads) {
+  requireSome(paths);
+  TileMerge files(paths);
+  WrittenMap written;
+  written.origin = files.origin();
+  files.forEachTile([&written](const TileSources&) { ++written.tile_count; });
+  MapFileWriter writer(out_path, written.origin, written.tile_count);
+  files.mergeTiles(false, true, threads, [&](const TileSources&, const MergedTile& tile) {
+    writer.add(tile.record, tile.bytes);
+    written.voxel_count += tile.voxel_count;
+    written.entry_count += tile.record.entry_count;
+  });
+  writer.commit(written.origin.point_count);
+  written.file_bytes = writer.size();
+  return written;
 }
 
 }  // namespace saw_ndt

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
+#include <vector>
 
 #include "map/metadata_lines.h"
 #include "segmentation/segmentation_fields.h"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr char kVersionKey[] = "software_version";
 constexpr char kSegmentationKey[] = "segmentation";
+constexpr char kMapOriginKey[] = "map_origin_m";
 constexpr char kKnown[] = "known";
 constexpr char kNone[] = "none";
 // Options that older files of version 2 do not have. Before there were feet, nothing was one.
@@ -20,7 +22,20 @@ constexpr std::string_view kLaterKeys[] = {kFootAngleKey, "ground.foot_height_m"
                                            "min_range_m", "max_range_m",          "vehicle_box_m"};
 constexpr double kNoFeetAngleDeg = 90.0;
 
+void readMapOrigin(MetadataLines& lines, Eigen::Vector3d& map_origin_m) {
+  std::vector<double> numbers;
+  lines.read(kMapOriginKey, numbers);
+  if (lines.fault()) return;
+  const bool valid = numbers.size() == 3 && Eigen::Map<const Eigen::Vector3d>(numbers.data()).allFinite();
+  if (!valid) return lines.failAt(kMapOriginKey, "damaged: the metadata gives no valid map_origin_m");
+  map_origin_m = Eigen::Map<const Eigen::Vector3d>(numbers.data());
+}
+
 }  // namespace
+
+std::string positionText(const Eigen::Vector3d& position) {
+  return fieldText(std::vector<double>(position.data(), position.data() + 3));
+}
 
 std::string metadataText(const MapOrigin& origin) {
   std::string text;
@@ -32,6 +47,7 @@ std::string metadataText(const MapOrigin& origin) {
   if (origin.segmentation) {
     forEachField(*origin.segmentation, [&](const char* name, const auto& value) { write(name, fieldText(value)); });
   }
+  if (!origin.map_origin_m.isZero(0.0)) write(kMapOriginKey, positionText(origin.map_origin_m));
   return text;
 }
 
@@ -41,6 +57,7 @@ std::optional<MetadataFault> readMetadata(std::string_view text, MapOrigin& orig
   std::string segmentation;
   lines.read(kVersionKey, origin.software_version);
   lines.read(kSegmentationKey, segmentation);
+  if (lines.gives(kMapOriginKey)) readMapOrigin(lines, origin.map_origin_m);
   if (lines.fault() || segmentation == kNone) return lines.fault();
   if (segmentation != kKnown) {
     lines.failAt(kSegmentationKey, "damaged: the metadata gives no valid segmentation");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@ namespace saw_ndt::internal {
 ///
 ///   software_version = 0.1.0    empty where it is not known
 ///   segmentation = known        or none; with `known` every field of SegmentationOptions follows, under its name
+///   map_origin_m = 5000 0 0     only where it is not zero
 std::string metadataText(const MapOrigin& origin);
 
 /// What is wrong with such a text, and where (bytes from its beginning).
@@ -23,5 +25,8 @@ struct MetadataFault {
 /// Sets what a text of metadataText() says. Unknown keys, which a later version may write, are passed over.
 /// @return a fault where a known key is missing, given twice or malformed
 std::optional<MetadataFault> readMetadata(std::string_view text, MapOrigin& origin);
+
+/// x, y and z apart by spaces, to the last bit.
+std::string positionText(const Eigen::Vector3d& position);
 
 }  // namespace saw_ndt::internal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "saw_ndt/map/voxel_sums.h"
@@ -16,6 +17,14 @@ constexpr int kTileSize = 1 << kTileBits;
 inline Eigen::Vector3i tileOf(const VoxelCoordinate& voxel) {
   return {voxel.x() >> kTileBits, voxel.y() >> kTileBits, voxel.z() >> kTileBits};
 }
+
+/// What the directory of a map file tells of a tile.
+struct MapTileRecord {
+  Eigen::Vector3i coordinate = Eigen::Vector3i::Zero();  ///< see tileOf()
+  std::uint32_t checksum = 0;                            ///< CRC-32 of the entries' bytes
+  std::uint64_t entry_count = 0;
+  std::uint64_t offset = 0;  ///< of the entries in the file
+};
 
 /// Strict order of tiles: by z, y and x. The file's order.
 inline bool tileInMapOrder(const Eigen::Vector3i& a, const Eigen::Vector3i& b) {

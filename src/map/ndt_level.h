@@ -23,6 +23,7 @@ struct NdtCell {
 
 /// The same in single precision, in a cache line of its own.
 struct alignas(64) PackedNdtCell {
+  PackedNdtCell() = default;
   explicit PackedNdtCell(const VoxelStatistics& statistics);
 
   float mean_from_centre[3];    ///< m

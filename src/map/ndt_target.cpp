@@ -11,6 +11,7 @@
 #include "map/map_file.h"
 #include "map/ndt_level.h"
 #include "map/sums_statistics.h"
+#include "saw_ndt/map/localization_map.h"
 
 namespace saw_ndt {
 
@@ -113,15 +114,16 @@ NdtTarget::NdtTarget(const WeightedVoxelMap& map, const VoxelWeighting& weightin
     if (planned[i].sums) continue;
     made[i] = NdtLevel::fromSums(entries, planned[i].plan, weighting, metresPerStep(map.origin()), precision, threads);
   }
-  auto levels = std::make_shared<Levels>();
-  levels->origin = map.origin();
-  levels->weighting = weighting;
-  levels->take(plan, std::move(made));
-  levels_ = std::move(levels);
+  levels_ = ofLevels(map.origin(), weighting, std::move(made)).levels_;
 }
 
 NdtTarget NdtTarget::load(const std::string& path, const VoxelWeighting& weighting, int threads) {
   weighting.check();
+  if (LocalizationMap::isOne(path)) {
+    const LocalizationMap map(path);
+    map.requireWeighting(weighting);
+    return map.target(threads);
+  }
   MapFileReader reader(path);
   const TargetPlan plan = planTarget(reader.origin(), weighting);
   std::vector<PlannedLevel> planned = plannedLevels(plan);
@@ -147,11 +149,15 @@ NdtTarget NdtTarget::load(const std::string& path, const VoxelWeighting& weighti
     made[i] = planned[i].sums ? levelOf(planned[i], reader.origin(), weighting, CellPrecision::SINGLE, 1)
                               : NdtLevel(planned[i].plan.resolution_m, std::move(cells));
   });
-  auto levels = std::make_shared<Levels>();
-  levels->origin = reader.origin();
-  levels->weighting = weighting;
-  levels->take(plan, std::move(made));
-  return NdtTarget(std::move(levels));
+  return ofLevels(reader.origin(), weighting, std::move(made));
+}
+
+NdtTarget NdtTarget::ofLevels(const MapOrigin& origin, const VoxelWeighting& weighting, std::vector<NdtLevel> levels) {
+  auto made = std::make_shared<Levels>();
+  made->origin = origin;
+  made->weighting = weighting;
+  made->take(planTarget(origin, weighting), std::move(levels));
+  return NdtTarget(std::move(made));
 }
 
 const MapOrigin& NdtTarget::origin() const { return levels_->origin; }

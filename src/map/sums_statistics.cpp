@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "common/executor.h"
 #include "map/merged_voxel.h"
@@ -63,6 +64,18 @@ void forEachStatistics(const LabelledVoxelSums* first, const LabelledVoxelSums* 
     appendVoxelStatistics(voxels.data(), voxels.size(), weighting, level, metres_per_step, statistics);
     visit(statistics);
   }
+}
+
+std::uint64_t voxelCountOf(const LabelledVoxelSums* first, const LabelledVoxelSums* last, double resolution_m) {
+  std::uint64_t count = 0;
+  forEachStatistics(first, last, {}, {}, resolution_m / kStepsPerVoxel,
+                    [&count](const std::vector<VoxelStatistics>& batch) { count += batch.size(); });
+  return count;
+}
+
+std::uint64_t pointCountOf(const LabelledVoxelSums* first, const LabelledVoxelSums* last) {
+  return std::accumulate(first, last, std::uint64_t{0},
+                         [](std::uint64_t count, const LabelledVoxelSums& entry) { return count + entry.sums.count; });
 }
 
 void forEachPartOfVoxels(const std::vector<LabelledVoxelSums>& entries, int threads,

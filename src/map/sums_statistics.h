@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -16,6 +17,12 @@ namespace saw_ndt::internal {
 void forEachStatistics(const LabelledVoxelSums* first, const LabelledVoxelSums* last, const VoxelWeighting& weighting,
                        const LevelPlan& level, double metres_per_step,
                        const std::function<void(const std::vector<VoxelStatistics>&)>& visit);
+
+/// How many voxels of entries have a distribution, by the default weighting.
+std::uint64_t voxelCountOf(const LabelledVoxelSums* first, const LabelledVoxelSums* last, double resolution_m);
+
+/// How many points entries have.
+std::uint64_t pointCountOf(const LabelledVoxelSums* first, const LabelledVoxelSums* last);
 
 /// Cuts entries into parts of whole voxels and calls process(part, first, last) for each, by several threads. `prepare`
 /// is called first with the number of parts.

@@ -100,15 +100,18 @@ class VoxelSumsTable {
 
   /// All entries in that order, moved out chunk by chunk. The table is empty afterwards.
   std::vector<LabelledVoxelSums> takeEntries() {
-    slots_ = std::vector<Slot>(kMinSlots);
     std::vector<LabelledVoxelSums> all;
     all.reserve(size());
     for (Chunk& chunk : chunks_) {
       all.insert(all.end(), chunk.entries.begin(), chunk.entries.end());
       chunk = {};
     }
-    chunks_.clear();
+    clear();
     return all;
+  }
+  void clear() {
+    slots_ = std::vector<Slot>(kMinSlots);
+    chunks_.clear();
   }
 
  private:

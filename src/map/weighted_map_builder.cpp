@@ -1,9 +1,7 @@
 #include "saw_ndt/map/weighted_map_builder.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -12,14 +10,16 @@
 
 #include "common/executor.h"
 #include "common/no_return.h"
+#include "map/map_encoding.h"
 #include "map/map_file_writer.h"
+#include "map/merge_rules.h"
+#include "map/spilled_tiles.h"
 #include "map/sums_statistics.h"
 #include "map/tiled_entries.h"
 #include "map/voxel_runs.h"
 #include "map/voxel_sums_table.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/version.h"
-#include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
 namespace {
@@ -78,30 +78,6 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
   return count;
 }
 
-void requireSameSegmentation(const std::optional<SegmentationOptions>& into,
-                             const std::optional<SegmentationOptions>& from) {
-  if (into.has_value() != from.has_value()) {
-    throw std::invalid_argument("segmentation: known of one of the maps to merge and not known of the other");
-  }
-  if (!into) return;
-  if (const auto difference = firstDifference(*into, *from)) {
-    throw std::invalid_argument("segmentation: the maps to merge differ in " + difference->field + ", which is " +
-                                difference->first + " in one and " + difference->second + " in the other");
-  }
-}
-
-// To be called before the sums are added; the order of additions does not matter. 0: not known of some of the points.
-void addScanCount(const LabelledVoxelSums& from, LabelledVoxelSums& into) {
-  if (into.sums.count == 0) {
-    into.scan_count = from.scan_count;
-  } else if (into.scan_count == 0 || from.scan_count == 0) {
-    into.scan_count = 0;
-  } else {
-    const std::uint64_t scan_count = std::uint64_t{into.scan_count} + from.scan_count;
-    into.scan_count = static_cast<std::uint32_t>(std::min<std::uint64_t>(scan_count, kMostScansOfVoxel));
-  }
-}
-
 }  // namespace
 
 WeightedMapBuilder::WeightedMapBuilder(double resolution_m, std::optional<SegmentationOptions> segmentation)
@@ -112,16 +88,26 @@ WeightedMapBuilder::WeightedMapBuilder(double resolution_m, std::optional<Segmen
   origin_.check();
 }
 
+void WeightedMapBuilder::setMapOrigin(const Eigen::Vector3d& map_origin_m) {
+  MapOrigin origin = origin_;
+  origin.map_origin_m = map_origin_m;
+  origin.check();
+  origin_ = origin;
+}
+
 WeightedMapBuilder::~WeightedMapBuilder() = default;
 WeightedMapBuilder::WeightedMapBuilder(const WeightedMapBuilder& other)
-    : origin_(other.origin_), table_(std::make_unique<VoxelSumsTable>(*other.table_)) {}
+    : origin_(other.origin_),
+      table_(std::make_unique<VoxelSumsTable>(*other.table_)),
+      most_entries_(other.most_entries_),
+      spilled_(other.spilled_ ? std::make_unique<SpilledTiles>(*other.spilled_) : nullptr) {}
 WeightedMapBuilder::WeightedMapBuilder(WeightedMapBuilder&& other) noexcept = default;
 WeightedMapBuilder& WeightedMapBuilder::operator=(const WeightedMapBuilder& other) {
   return *this = WeightedMapBuilder(other);
 }
 WeightedMapBuilder& WeightedMapBuilder::operator=(WeightedMapBuilder&& other) noexcept = default;
 
-bool WeightedMapBuilder::isEmpty() const { return origin_.scan_count == 0 && table_->size() == 0; }
+bool WeightedMapBuilder::isEmpty() const { return origin_.scan_count == 0 && table_->size() == 0 && !hasSpilled(); }
 
 void WeightedMapBuilder::requireKind(bool labelled) const {
   if (!isEmpty() && origin_.labelled != labelled) {
@@ -130,12 +116,7 @@ void WeightedMapBuilder::requireKind(bool labelled) const {
 }
 
 void WeightedMapBuilder::beginAdding(bool labelled, const std::string& software_version) {
-  if (isEmpty()) {
-    origin_.labelled = labelled;
-    origin_.software_version = software_version;
-  } else if (origin_.software_version != software_version) {
-    origin_.software_version.clear();
-  }
+  internal::beginAdding(origin_, !isEmpty(), labelled, software_version);
 }
 
 void WeightedMapBuilder::requireAddable(const LabelView& labels, const Eigen::Isometry3d& T_map_scan) const {
@@ -151,6 +132,8 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
   requireAddable(labels, T_map_scan);
   beginAdding(labels.known(), SAW_NDT_VERSION);
   ++origin_.scan_count;
+  // Not while a scan may be continued: a voxel counts it once.
+  spillWhereTooMany();
   addPoints(points, labels, T_map_scan, threads);
 }
 
@@ -190,44 +173,58 @@ void WeightedMapBuilder::addPoints(const ScanView& points, const LabelView& labe
   }
 }
 
+void WeightedMapBuilder::limitMemory(std::size_t most_entries, const std::filesystem::path& folder) {
+  checkOption(most_entries > 0, "most_entries", most_entries, "1 or more");
+  if (spilled_ == nullptr) spilled_ = std::make_unique<SpilledTiles>(folder);
+  most_entries_ = most_entries;
+}
+
+bool WeightedMapBuilder::hasSpilled() const { return spilled_ != nullptr && !spilled_->parts().empty(); }
+
+void WeightedMapBuilder::spillWhereTooMany() {
+  if (spilled_ == nullptr || table_->size() < most_entries_) return;
+  forEachTileOf(*table_, nullptr, [&](const std::vector<LabelledVoxelSums>& entries) { spilled_->add(entries); });
+  table_->clear();
+}
+
 void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
-  EntryBatches batches;
-  other.table_->forEachBatch([&](const std::vector<LabelledVoxelSums>& entries) { batches.push_back(&entries); });
-  merge(other.origin_, batches);
-}
-
-void WeightedMapBuilder::merge(const WeightedVoxelMap& map) { merge(map.origin(), {&map.entries()}); }
-
-void WeightedMapBuilder::merge(const MapOrigin& origin, const EntryBatches& batches) {
-  checkOption(origin.resolution_m == origin_.resolution_m, "resolution_m", fieldText(origin.resolution_m),
-              ("that of the map merged into, " + fieldText(origin_.resolution_m)).c_str());
-  const bool adds = origin.scan_count != 0 ||
-                    std::any_of(batches.begin(), batches.end(), [](const auto* entries) { return !entries->empty(); });
-  if (adds) requireKind(origin.labelled);
-  requireSameSegmentation(origin_.segmentation, origin.segmentation);
+  const bool adds = !other.isEmpty();
+  requireMergeable(origin_, !isEmpty(), other.origin_, adds);
   if (!adds) return;
-  requireRoomFor(origin, batches);
-  beginAdding(origin.labelled, origin.software_version);
-  for (const std::vector<LabelledVoxelSums>* const entries : batches) {
-    table_->add(*entries,
-                [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { addScanCount(from, into); });
+  if (!other.hasSpilled()) {
+    other.table_->forEachBatch(
+        [&](const std::vector<LabelledVoxelSums>& entries) { requireRoomFor(other.origin_, entries); });
   }
-  origin_.scan_count += origin.scan_count;
-  origin_.point_count += origin.point_count;
+  const bool holds = !isEmpty();
+  if (other.hasSpilled()) {
+    other.forEachTile([&](const std::vector<LabelledVoxelSums>& entries) { add(entries); });
+  } else {
+    other.table_->forEachBatch([&](const std::vector<LabelledVoxelSums>& entries) { add(entries); });
+  }
+  addOrigin(origin_, holds, other.origin_);
 }
 
-void WeightedMapBuilder::requireRoomFor(const MapOrigin& origin, const EntryBatches& batches) const {
-  if (origin.scan_count > std::numeric_limits<std::uint64_t>::max() - origin_.scan_count) {
-    throw std::invalid_argument("scan_count: more scans than can be counted");
-  }
+void WeightedMapBuilder::merge(const WeightedVoxelMap& map) {
+  const bool adds = map.origin().scan_count != 0 || !map.entries().empty();
+  requireMergeable(origin_, !isEmpty(), map.origin(), adds);
+  if (!adds) return;
+  requireRoomFor(map.origin(), map.entries());
+  const bool holds = !isEmpty();
+  add(map.entries());
+  addOrigin(origin_, holds, map.origin());
+}
+
+void WeightedMapBuilder::add(const std::vector<LabelledVoxelSums>& entries) {
+  spillWhereTooMany();
+  table_->add(entries,
+              [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { addScanCount(from, into); });
+}
+
+void WeightedMapBuilder::requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const {
   if (origin_.point_count + origin.point_count <= VoxelSums::kMostPoints) return;
-  for (const std::vector<LabelledVoxelSums>* const entries : batches) {
-    for (const LabelledVoxelSums& from : *entries) {
-      const LabelledVoxelSums* const into = table_->find(from.voxel, from.label);
-      if (into != nullptr && into->sums.count + from.sums.count > VoxelSums::kMostPoints) {
-        throw std::invalid_argument("a voxel would hold more than 2^33 points");
-      }
-    }
+  for (const LabelledVoxelSums& from : entries) {
+    const LabelledVoxelSums* const into = table_->find(from.voxel, from.label);
+    if (into != nullptr) internal::requireRoomFor(from.sums, into->sums);
   }
 }
 
@@ -235,51 +232,61 @@ std::size_t WeightedMapBuilder::entryCount() const { return table_->size(); }
 
 WeightedVoxelMap WeightedMapBuilder::build() const& {
   std::vector<LabelledVoxelSums> entries;
-  entries.reserve(table_->size());
-  table_->forEachBatch(
-      [&](const std::vector<LabelledVoxelSums>& batch) { entries.insert(entries.end(), batch.begin(), batch.end()); });
+  if (hasSpilled()) {
+    forEachTile([&](const std::vector<LabelledVoxelSums>& tile) { entries.insert(entries.end(), tile.begin(), tile.end()); });
+  } else {
+    entries.reserve(table_->size());
+    table_->forEachBatch([&](const std::vector<LabelledVoxelSums>& batch) {
+      entries.insert(entries.end(), batch.begin(), batch.end());
+    });
+  }
   return {origin_, std::move(entries)};
 }
 
 WeightedVoxelMap WeightedMapBuilder::build() && {
+  if (hasSpilled()) {
+    WeightedVoxelMap map = static_cast<const WeightedMapBuilder&>(*this).build();
+    table_->clear();
+    spilled_->clear();
+    origin_.scan_count = origin_.point_count = 0;
+    return map;
+  }
   const MapOrigin origin = origin_;
   origin_.scan_count = origin_.point_count = 0;
   return {origin, table_->takeEntries()};
 }
 
-void WeightedMapBuilder::forEachTile(
-    const std::function<void(const std::vector<LabelledVoxelSums>& entries)>& visit) const {
-  const TiledEntries tiles(*table_);
-  std::vector<LabelledVoxelSums> entries;
-  for (std::size_t tile = 0; tile < tiles.tileCount(); ++tile) {
-    tiles.read(tile, entries);
-    visit(entries);
-  }
+void WeightedMapBuilder::forEachTile(const std::function<void(const std::vector<LabelledVoxelSums>& entries)>& visit,
+                                     int threads) const {
+  forEachTileOf(*table_, spilled_.get(), visit, threads);
 }
 
-void WeightedMapBuilder::save(const std::string& path) const {
-  const TiledEntries tiles(*table_);
+WrittenMap WeightedMapBuilder::save(const std::string& path, int threads) const {
+  struct Encoded {
+    MapTileRecord record;
+    std::vector<char> bytes;
+    std::uint64_t voxel_count = 0;
+  };
+  const TiledEntries tiles(*table_, spilled_.get());
   MapFileWriter writer(path, origin_, tiles.tileCount());
-  std::vector<LabelledVoxelSums> entries;
-  for (std::size_t tile = 0; tile < tiles.tileCount(); ++tile) {
-    tiles.read(tile, entries);
-    writer.add(entries.data(), entries.data() + entries.size());
-  }
+  WrittenMap written;
+  tiles.forEach<Encoded>(
+      threads,
+      [&](const std::vector<LabelledVoxelSums>& entries, Encoded& encoded) {
+        const LabelledVoxelSums* const end = entries.data() + entries.size();
+        encoded.record = encodeTile(entries.data(), end, encoded.bytes);
+        encoded.voxel_count = voxelCountOf(entries.data(), end, origin_.resolution_m);
+      },
+      [&](const Encoded& encoded) {
+        writer.add(encoded.record, encoded.bytes);
+        written.voxel_count += encoded.voxel_count;
+        written.entry_count += encoded.record.entry_count;
+      });
   writer.commit(origin_.point_count);
-}
-
-std::size_t WeightedMapBuilder::voxelCount(const VoxelWeighting& weighting, int threads) const {
-  weighting.check();
-  const TiledEntries tiles(*table_);
-  std::atomic<std::size_t> count{0};
-  forEachChunk(threads, tiles.tileCount(), [&](std::size_t tile, int) {
-    std::vector<LabelledVoxelSums> entries;
-    tiles.read(tile, entries);
-    forEachStatistics(entries.data(), entries.data() + entries.size(), weighting, {},
-                      origin_.resolution_m / kStepsPerVoxel,
-                      [&](const std::vector<VoxelStatistics>& batch) { count += batch.size(); });
-  });
-  return count;
+  written.origin = origin_;
+  written.tile_count = tiles.tileCount();
+  written.file_bytes = writer.size();
+  return written;
 }
 
 }  // namespace saw_ndt

@@ -7,9 +7,12 @@
 #include <utility>
 
 #include "map/map_file.h"
+#include "map/map_metadata.h"
 #include "map/map_order.h"
 #include "map/map_tile.h"
+#include "map/region_tiles.h"
 #include "map/sums_statistics.h"
+#include "map/tile_batches.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -27,6 +30,7 @@ void MapOrigin::check() const {
   if (segmentation) segmentation->check();
   checkOption(software_version.find('\n') == std::string::npos, "software_version", software_version,
               "without line breaks");
+  checkOption(map_origin_m.allFinite(), "map_origin_m", positionText(map_origin_m), "finite");
 }
 
 WeightedVoxelMap::WeightedVoxelMap(const MapOrigin& origin, std::vector<LabelledVoxelSums> entries)
@@ -104,6 +108,22 @@ WeightedVoxelMap WeightedVoxelMap::load(const std::string& path) {
     }
   }
   return {reader.origin(), std::move(entries)};
+}
+
+WeightedVoxelMap WeightedVoxelMap::load(const std::string& path, const MapRegion& region, int threads) {
+  using Entries = std::vector<LabelledVoxelSums>;
+  MapFileReader reader(path);
+  RegionTiles tiles(reader, region);
+  MapOrigin origin = reader.origin();
+  Entries kept;
+  forEachTileInBatches<RegionTile, Entries, Entries>(
+      threads, [&tiles](RegionTile& tile) { return tiles.next(tile); },
+      [&](const RegionTile& tile, Entries& whole, Entries& entries) {
+        decodeTileIn(reader, tile.place, region, whole, entries);
+      },
+      [&kept](const RegionTile&, const Entries& entries) { kept.insert(kept.end(), entries.begin(), entries.end()); });
+  origin.point_count = pointCountOf(kept.data(), kept.data() + kept.size());
+  return {origin, std::move(kept)};
 }
 
 }  // namespace saw_ndt

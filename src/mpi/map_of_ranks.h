@@ -2,6 +2,7 @@
 
 #include <boost/mpi/communicator.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -38,10 +39,11 @@ std::vector<DrivePlan> toldPlans(const boost::mpi::communicator& ranks, std::vec
 /// @param open       every rank must be able to open every drive; called by a thread of its own
 /// @param common     as for buildDriveMap(), the same for all drives; where scan_left_out is set, its place is taken by
 ///                   MapOfRanks::left_out
+/// @param spill_folder  where a rank keeps what is more than kMostEntriesInMemory of its tiles in a temporary file
 /// @param scan_done  called on rank 0 after each scan of any rank; may be empty
 /// @throws whatever goes wrong on this rank; others do not learn of it. Error on rank 0 where no scan is left
 MapOfRanks buildMapOfRanks(const boost::mpi::communicator& ranks, const std::vector<DrivePlan>& plans,
                            const DriveOpener& open, const DriveMapOptions& common,
-                           const std::function<void()>& scan_done);
+                           const std::filesystem::path& spill_folder, const std::function<void()>& scan_done);
 
 }  // namespace saw_ndt::internal

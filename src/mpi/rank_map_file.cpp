@@ -15,6 +15,7 @@
 #include "common/atomic_output.h"
 #include "map/map_encoding.h"
 #include "map/map_tile.h"
+#include "map/sums_statistics.h"
 #include "mpi/removed_on_termination.h"
 #include "saw_ndt/common/error.h"
 
@@ -134,10 +135,12 @@ std::vector<std::uint64_t> scatterOffsets(const mpi::communicator& ranks, const 
 
 }  // namespace
 
-void writeMapOfRanks(const mpi::communicator& ranks, const std::string& path, const MapOfRanks& map) {
+std::uint64_t writeMapOfRanks(const mpi::communicator& ranks, const std::string& path, const MapOfRanks& map) {
   std::vector<std::uint64_t> own;
   std::vector<char> bytes;
+  std::uint64_t voxel_count = 0;
   map.owned.forEachTile([&](const std::vector<LabelledVoxelSums>& entries) {
+    voxel_count += voxelCountOf(entries.data(), entries.data() + entries.size(), map.owned.origin().resolution_m);
     PackedRecord::append(encodeTile(entries.data(), entries.data() + entries.size(), bytes), own);
   });
   const FilePlan plan = gatherPlan(ranks, own, map.origin);
@@ -162,6 +165,7 @@ void writeMapOfRanks(const mpi::communicator& ranks, const std::string& path, co
     output->commit();
   }
   ranks.barrier();
+  return voxel_count;
 }
 
 }  // namespace saw_ndt::internal

@@ -21,17 +21,6 @@ struct TileHeader {
 };
 static_assert(sizeof(TileHeader) == 16);
 
-LabelledVoxelSums decoded(const MapEntryLayout& layout, const Eigen::Vector3i& tile) {
-  LabelledVoxelSums entry;
-  for (int axis = 0; axis < 3; ++axis) entry.voxel[axis] = tile[axis] * kTileSize + layout.place[axis];
-  entry.label = static_cast<StructuralLabel>(layout.label);
-  entry.scan_count = layout.scan_count.value();
-  entry.sums.count = layout.count.value();
-  for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) entry.sums.sum[i] = layout.sum[i].value();
-  for (std::size_t i = 0; i < entry.sums.product.size(); ++i) entry.sums.product[i] = layout.product[i].value();
-  return entry;
-}
-
 // Copies the next bytes of a message and moves `place` behind them.
 template <typename Layout>
 Layout take(const std::vector<char>& message, std::size_t& place) {
@@ -76,7 +65,7 @@ void addMessage(const std::vector<char>& message, WeightedMapBuilder& owned) {
     const Eigen::Vector3i tile(header.coordinate[0].value(), header.coordinate[1].value(),
                                header.coordinate[2].value());
     for (std::uint32_t i = 0; i < header.entry_count.value(); ++i) {
-      entries.push_back(decoded(take<MapEntryLayout>(message, place), tile));
+      entries.push_back(decodeEntry(take<MapEntryLayout>(message, place), tile));
       origin.point_count += entries.back().sums.count;
     }
   }

@@ -36,6 +36,16 @@ nlohmann::ordered_json toJson(const internal::DurationStatistics& durations) {
 
 nlohmann::ordered_json toJson(const StateShare& share) { return {{"scans", share.scans}, {"seconds", share.seconds}}; }
 
+nlohmann::ordered_json toJson(const TileLoads& loads) {
+  nlohmann::ordered_json json = {{"loads", loads.loads},
+                                 {"waits", loads.waits},
+                                 {"longest_wait_ms", loads.longest_wait_ms},
+                                 {"first_load_ms", loads.first_load_ms},
+                                 {"longest_load_ms", loads.longest_load_ms}};
+  if (loads.least_radius_m > 0.0) json["least_radius_m"] = loads.least_radius_m;
+  return json;
+}
+
 nlohmann::ordered_json toJson(const LocalizationSummary& summary) {
   nlohmann::ordered_json json;
   json["method"] = summary.method;
@@ -62,6 +72,7 @@ nlohmann::ordered_json toJson(const LocalizationSummary& summary) {
   json["peak_rss_mb"] = summary.peak_rss_mb;
   json["threads"] = summary.threads;
   json["motion_compensation"] = toString(summary.motion_compensation);
+  if (summary.tiles) json["tiles"] = toJson(*summary.tiles);
   if (!summary.motion_compensation_reason.empty()) {
     json["motion_compensation_reason"] = summary.motion_compensation_reason;
   }

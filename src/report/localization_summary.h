@@ -34,6 +34,7 @@ struct LocalizationSummary {
   double iterations_mean = 0.0, evaluations_mean = 0.0;
   double likelihood_mean = 0.0, nearest_voxel_likelihood_mean = 0.0, non_ground_likelihood_mean = 0.0;
   std::optional<std::size_t> left_out;  ///< scans of a live source that were left out for newer ones
+  std::optional<TileLoads> tiles;       ///< where tiles of a LocalizationMap were loaded
   double peak_rss_mb = 0.0;             ///< of this process, so far
   int threads = 0;
   std::optional<TrajectoryMetrics> metrics;  ///< where a reference exists

@@ -87,6 +87,8 @@ Json toJson(const MapSummary& summary) {
             {"coarse_voxels", summary.coarse_voxels},
             {"box_min_m", toJson(summary.box_min_m)},
             {"box_max_m", toJson(summary.box_max_m)}};
+  if (!summary.map_origin_m.isZero(0.0)) json["map_origin_m"] = toJson(summary.map_origin_m);
+  if (summary.dead_bytes != 0) json["dead_bytes"] = summary.dead_bytes;
   if (summary.labelled) json["label_points"] = withShares({"noise", "ground", "non_ground"}, summary.label_points);
   json["class_voxels"] = withShares({"linear", "planar", "volumetric"}, summary.class_voxels);
   if (summary.labelled) json["segmentation"] = summary.segmentation ? toJson(*summary.segmentation) : Json(kNotKnown);
@@ -106,6 +108,7 @@ MapSummary summarize(const WeightedVoxelMap& map, const VoxelWeighting& weightin
   summary.resolution_m = map.resolution();
   summary.coarse_resolution_m = weighting.coarse_factor > 1 ? weighting.coarse_factor * map.resolution() : 0.0;
   summary.labelled = map.labelled();
+  summary.map_origin_m = map.origin().map_origin_m;
   summary.software_version = map.origin().software_version;
   summary.segmentation = map.origin().segmentation;
   summary.scans = map.origin().scan_count;

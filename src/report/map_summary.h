@@ -23,7 +23,9 @@ struct MapSummary {
   double resolution_m = 0.0;         ///< edge of a fine voxel
   double coarse_resolution_m = 0.0;  ///< edge of a coarse voxel, 0 without a coarse level
   bool labelled = false;
-  std::string software_version;                     ///< that added the points; empty where it is not known
+  Eigen::Vector3d map_origin_m = Eigen::Vector3d::Zero();  ///< see MapOrigin
+  std::uint64_t dead_bytes = 0;  ///< that updates left in the map's file; summarize() does not know it
+  std::string software_version;  ///< that added the points; empty where it is not known
   std::optional<SegmentationOptions> segmentation;  ///< how labels were made; nothing without labels or not known
   std::uint64_t scans = 0;
   std::uint64_t points = 0;

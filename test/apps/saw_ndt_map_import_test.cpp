@@ -42,7 +42,9 @@ TEST_F(MapImportApp, TellsTheOriginThatItTakesOff) {
   result = run(files + " -origin 456000,5432000,-1.5 -labels heights");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("origin taken off: 456000,5432000,-1.5 "), std::string::npos) << result.output;
-  EXPECT_TRUE(WeightedVoxelMap::load(path("a.map")).labelled());
+  const WeightedVoxelMap map = WeightedVoxelMap::load(path("a.map"));
+  EXPECT_TRUE(map.labelled());
+  EXPECT_EQ(map.origin().map_origin_m, Eigen::Vector3d(456000.0, 5432000.0, -1.5));
 }
 
 TEST_F(MapImportApp, ErrorsLeaveNothingBehind) {

@@ -1,4 +1,5 @@
 #include "drive_files.h"
+#include "saw_ndt/map/map_update.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
 
 namespace saw_ndt {
@@ -35,6 +36,26 @@ TEST_F(MapMergeApp, ShardsMergeIntoTheBytesOfTheWholeInAnyOrder) {
     ASSERT_EQ(runAppProgram(SAW_NDT_APP, path("merged.map") + path("3.map") + path("1.map")).exit_code, 0);
     EXPECT_TRUE(bytesOf("merged.map") == bytesOf("whole.map"));
   }
+}
+
+TEST_F(MapMergeApp, DrivesAreAddedInPlace) {
+  build("whole.map", "-scans 0:6");
+  for (const std::string shard : {"1/3", "2/3", "3/3"}) build(shard.substr(0, 1) + ".map", "-shard " + shard);
+  AppResult result = runAppProgram(SAW_NDT_APP, "-update " + path("1.map") + path("3.map") + path("2.map"));
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("1.map: "), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(" of 6 scans; "), std::string::npos) << result.output;
+  const std::string dead = std::to_string(deadBytesOfMapFile((folder.path() / "1.map").string()));
+  EXPECT_NE(dead, "0");
+  EXPECT_NE(result.output.find("\n" + dead + " of its " + std::to_string(bytesOf("1.map").size()) + " bytes are dead"),
+            std::string::npos)
+      << result.output;
+  result = runAppProgram(SAW_NDT_APP, path("merged.map") + path("1.map"));
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("left out: " + dead + " dead bytes"), std::string::npos) << result.output;
+  EXPECT_TRUE(bytesOf("merged.map") == bytesOf("whole.map"));
+  expectFails(SAW_NDT_APP, "-update " + path("none.map") + path("2.map"), 1, {"none.map: No such file"});
+  expectFails(SAW_NDT_APP, "-update " + path("1.map") + path("1.map"), 1, {"1.map: is given twice"});
 }
 
 TEST_F(MapMergeApp, ShardsThatAreNoneAreWrongUsage) {

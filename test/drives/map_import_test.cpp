@@ -106,6 +106,7 @@ TEST_F(MapImport, CoordinatesOfUtmKeepAMillimetre) {
   options.origin_m = {456000.0, 5432000.0, 100.0};
   const ImportedMap stated = importMap(folder.path() / "utm.pcd", options);
   EXPECT_EQ(stated.origin_m, *options.origin_m);
+  EXPECT_EQ(stated.builder.build().origin().map_origin_m, Eigen::Vector3d(456000.0, 5432000.0, 100.0));
   const Eigen::Vector3d moved = expected + Eigen::Vector3d(1000.0, 0.0, -100.0);
   EXPECT_TRUE(stated.builder.build().find(moved).has_value());
 }

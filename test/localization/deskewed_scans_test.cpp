@@ -68,7 +68,7 @@ TEST_P(DeskewedScans, TheMotionThatRegistrationFindsTakesOutMostOfTheSkew) {
   ScanMotion motion;
   for (int round = 0; round < 3; ++round) {
     T_map_lidar = NdtAligner().align(target, moving.compensatedBy(motion), T_map_lidar, alignment).T_map_source;
-    const auto refined = MotionRefinement(target, alignment).refine(moving, T_map_lidar, motion, prior);
+    const auto refined = MotionRefinement(alignment).refine(target, moving, T_map_lidar, motion, prior);
     ASSERT_TRUE(refined);
     T_map_lidar = refined->T_map_base;
     motion = refined->motion;

@@ -7,7 +7,10 @@
 #include <random>
 
 #include "expect_throws.h"
+#include "map_fixtures.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/map/weighted_map_builder.h"
+#include "temporary_folder.h"
 
 namespace saw_ndt {
 namespace {
@@ -159,6 +162,78 @@ TEST(MapCrop, HalvesMergeIntoTheEntriesOfTheWhole) {
   }
   EXPECT_EQ(whole.origin().point_count, map.origin().point_count);
   EXPECT_EQ(whole.origin().scan_count, 2 * map.origin().scan_count);
+}
+
+// What lies on the tiles of a larger map, with an origin.
+WeightedVoxelMap town() {
+  WeightedMapBuilder builder(0.4);
+  builder.setMapOrigin({1000.0, 2000.0, 0.0});
+  for (unsigned scan = 0; scan < 2; ++scan) {
+    addCloud(builder, mixedCloud(scan, 6000, 100.0F), Eigen::Isometry3d::Identity());
+  }
+  return builder.build();
+}
+
+std::vector<MapRegion> regionsOfTown() {
+  const std::vector<Eigen::Vector2d> line = {{-90.0, -20.0}, {-10.0, 30.0}, {60.0, 30.0}, {80.0, -70.0}};
+  const MapRegion box = boxRegion({-30.0, 4.0, -2.0}, {25.6, 60.0, 9.0});
+  return {box,
+          polygonRegion(line),
+          regionAround(line, 12.0),
+          commonRegion(box, regionAround(line, 30.0)),
+          boxRegion({-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}),
+          [](const Eigen::Vector3d& position_m) { return position_m.x() * position_m.y() > 900.0; }};
+}
+
+TEST(MapCrop, OfAFileIsThatOfTheMap) {
+  const TemporaryFolder folder;
+  const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
+  const WeightedVoxelMap map = town();
+  map.save(path("town.map"));
+  for (const MapRegion& region : regionsOfTown()) {
+    const WeightedVoxelMap cropped = cropMap(map, region);
+    cropped.save(path("expected.map"));
+    const std::string expected = contentOf(path("expected.map"));
+    for (const int threads : {1, 2}) {
+      const CroppedMap written = cropMapFile(path("town.map"), region, path("part.map"), threads);
+      EXPECT_TRUE(contentOf(path("part.map")) == expected);
+      EXPECT_EQ(written.origin.point_count, cropped.origin().point_count);
+      EXPECT_EQ(written.origin.map_origin_m, Eigen::Vector3d(1000.0, 2000.0, 0.0));
+      EXPECT_EQ(written.point_count_before, map.origin().point_count);
+      EXPECT_EQ(written.entry_count, cropped.entries().size());
+      EXPECT_EQ(written.voxel_count, cropped.voxelCount());
+      EXPECT_EQ(written.file_bytes, expected.size());
+      WeightedVoxelMap::load(path("town.map"), region, threads).save(path("loaded.map"));
+      EXPECT_TRUE(contentOf(path("loaded.map")) == expected);
+    }
+  }
+  cropMapFile(path("town.map"), regionsOfTown().front(), path("town.map"));
+  cropMap(map, regionsOfTown().front()).save(path("expected.map"));
+  EXPECT_TRUE(contentOf(path("town.map")) == contentOf(path("expected.map")));
+}
+
+TEST(MapCrop, OfAFileReadsOnlyTheTilesThatCanMeetTheRegion) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "town.map").string(), part = (folder.path() / "part.map").string();
+  const WeightedVoxelMap map = town();
+  map.save(file);
+  std::string damaged = contentOf(file);
+  damaged[damaged.size() - 3] = static_cast<char>(damaged[damaged.size() - 3] ^ 4);  // of the last tile
+  folder.write("town.map", damaged);
+  expectThrows<Error>([&] { WeightedVoxelMap::load(file); }, {"town.map: offset ", "checksum of a tile"});
+  const MapRegion low = boxRegion({-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, 0.4});
+  EXPECT_EQ(WeightedVoxelMap::load(file, low).entries().size(), cropMap(map, low).entries().size());
+  cropMapFile(file, low, part);
+  const MapRegion high = boxRegion({-kInfinity, -kInfinity, 0.0}, {kInfinity, kInfinity, kInfinity});
+  const std::string before = contentOf(part);
+  expectThrows<Error>([&] { WeightedVoxelMap::load(file, high); }, {"town.map: offset ", "checksum of a tile"});
+  expectThrows<Error>([&] { cropMapFile(file, high, part); }, {"town.map: offset ", "checksum of a tile"});
+  const MapRegion far = boxRegion({500.0, 500.0, 0.0}, {600.0, 600.0, 10.0});
+  EXPECT_TRUE(WeightedVoxelMap::load(file, far).entries().empty());
+  expectThrows<Error>([&] { cropMapFile(file, far, part); }, {"town.map: none of its voxels", "nothing is left"});
+  expectThrows<Error>([&] { cropMapFile(part + ".none", low, part); }, {"part.map.none: cannot be opened"});
+  EXPECT_TRUE(contentOf(part) == before);
+  EXPECT_EQ(folder.entryCount(), 2U);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include "map/map_tile.h"
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
+#include "saw_ndt/map/map_merge.h"
+#include "saw_ndt/map/map_update.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/version.h"
 #include "temporary_folder.h"
@@ -323,9 +325,9 @@ TEST_F(MapFile, RefusesForeignFiles) {
   expectRefused(std::string(1000, '\0'), {"offset 0", "not a saw_ndt map"});
   expectRefused("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\n", {"offset 0", "not a saw_ndt map"});
   std::string newer = bytesOf(tinyMap());
-  put(newer, 8, std::uint32_t{4});
+  put(newer, 8, std::uint32_t{5});
   checksum(newer);
-  expectRefused(newer, {"offset 8", "map version 4, this program reads versions 1 to 3"});
+  expectRefused(newer, {"offset 8", "map version 5, this program reads versions 1 to 4"});
   expectThrows<Error>([&] { WeightedVoxelMap::load(path("none.map")); }, {path("none.map"), "No such file"});
   expectThrows<Error>([&] { WeightedVoxelMap::load(folder.path().string()); }, {folder.path().string(), "folder"});
 }
@@ -411,6 +413,49 @@ TEST_F(MapFile, RefusesTilesOutOfOrder) {
       expectRefused(bytes, {"offset " + std::to_string(directory + kTileBytes), "out of order"});
     }
   }
+}
+
+TEST_F(MapFile, OfVersion1IsNotUpdatedInPlaceAndOfVersion2Is) {
+  WeightedMapBuilder builder(1.0);
+  for (unsigned seed = 0; seed < 2; ++seed)
+    addCloud(builder, mixedCloud(seed, 500, 90.0F), Eigen::Isometry3d::Identity());
+  const std::string bytes = bytesOf(builder.build());
+  tinyMap().save(path("tiny.map"));
+  const std::string first = folder.write("1.map", asVersion1(bytes)).string();
+  expectThrows<Error>([&] { updateMapFile(first, {path("tiny.map")}); }, {"1.map: map version 1", "merge it"});
+  EXPECT_TRUE(contentOf(first) == asVersion1(bytes));
+  for (const std::string& old : {bytes, asVersion2(bytes)}) {
+    const std::string file = folder.write("old.map", old).string();
+    const std::string expected = bytesOf(mergeMapFiles({file, path("tiny.map")}));
+    updateMapFile(file, {path("tiny.map")});
+    EXPECT_TRUE(bytesOf(WeightedVoxelMap::load(file)) == expected);
+  }
+}
+
+TEST_F(MapFile, TellsTheOriginOfTheMapWhereItIsNotZero) {
+  const std::string without = bytesOf(tinyMap());
+  WeightedMapBuilder builder(1.0);
+  builder.setMapOrigin({0.0, -0.0, 0.0});
+  builder.merge(tinyMap());
+  EXPECT_TRUE(bytesOf(builder.build()) == without);
+  EXPECT_EQ(WeightedVoxelMap::load(path("saved.map")).origin().map_origin_m, Eigen::Vector3d::Zero());
+
+  MapOrigin origin = tinyMap().origin();
+  origin.map_origin_m << 691000.1, 5335999.0 + 1e-9, -0.1;
+  const std::string with = bytesOf({origin, tinyMap().entries()});
+  EXPECT_EQ(WeightedVoxelMap::load(path("saved.map")).origin().map_origin_m, origin.map_origin_m);
+  EXPECT_EQ(NdtTarget::load(path("saved.map")).origin().map_origin_m, origin.map_origin_m);
+  for (const std::string to : {"inf", "1 2", "1 2 3 4", "1 2 x", ""}) {
+    std::string damaged = with;
+    const std::size_t begin = damaged.find("map_origin_m = ") + 15, end = damaged.find('\n', begin);
+    damaged.replace(begin, end - begin, to + std::string(end - begin > to.size() ? end - begin - to.size() : 0, ' '));
+    ASSERT_EQ(damaged.size(), with.size());
+    checksumFront(damaged);
+    expectRefused(damaged, {"offset " + std::to_string(begin), "no valid map_origin_m"});
+  }
+  origin.map_origin_m.x() = std::nan("");
+  expectThrows<std::invalid_argument>([&] { WeightedVoxelMap(origin, {}); }, {"map_origin_m", "finite"});
+  expectThrows<std::invalid_argument>([&] { builder.setMapOrigin(origin.map_origin_m); }, {"map_origin_m", "finite"});
 }
 
 TEST_F(MapFile, LeavesNothingBehindWhereItCannotWrite) {

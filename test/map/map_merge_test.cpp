@@ -47,8 +47,82 @@ TEST_F(MapMerge, GivesTheBytesOfTheMapOfAllScansInAnyOrderOfFiles) {
   std::sort(paths.begin(), paths.end());
   do {
     EXPECT_TRUE(bytesOf(mergeMapFiles(paths)) == expected);
+    const WrittenMap written = mergeMapFiles(paths, path("merged.map"), 2);
+    EXPECT_TRUE(contentOf(path("merged.map")) == expected);
+    EXPECT_EQ(written.file_bytes, expected.size());
   } while (std::next_permutation(paths.begin(), paths.end()));
   EXPECT_TRUE(bytesOf(mergeMapFiles({path("a.map")})) == contentOf(path("a.map")));
+}
+
+TEST_F(MapMerge, WritesTheFileOfManyTilesThatTheBuilderMakes) {
+  WeightedMapBuilder builder(0.4);
+  std::vector<std::string> paths;
+  for (unsigned drive = 0; drive < 4; ++drive) {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() << 45.0 * drive, -30.0 * drive, 4.0 * drive;
+    WeightedMapBuilder part(0.4);
+    for (unsigned scan = 0; scan < 2; ++scan) {
+      addCloud(builder, mixedCloud(2 * drive + scan, 3000, 60.0F), T);
+      addCloud(part, mixedCloud(2 * drive + scan, 3000, 60.0F), T);
+    }
+    paths.push_back(saved(std::to_string(drive) + ".map", part.build()));
+  }
+  const WeightedVoxelMap whole = builder.build();
+  const std::string expected = bytesOf(whole);
+  for (const int threads : {1, 2, 0}) {
+    const WrittenMap written = mergeMapFiles(paths, path("merged.map"), threads);
+    EXPECT_TRUE(contentOf(path("merged.map")) == expected);
+    EXPECT_EQ(written.origin.point_count, whole.origin().point_count);
+    EXPECT_EQ(written.origin.scan_count, 8U);
+    EXPECT_EQ(written.entry_count, whole.entries().size());
+    EXPECT_EQ(written.voxel_count, whole.voxelCount());
+    EXPECT_GT(written.tile_count, 60U);
+    std::rotate(paths.begin(), paths.begin() + 1, paths.end());
+  }
+  // Into one of the files.
+  mergeMapFiles(paths, paths[1]);
+  EXPECT_TRUE(contentOf(paths[1]) == expected);
+}
+
+TEST_F(MapMerge, FailsWithoutATrace) {
+  const std::string a = saved("a.map", mapOfScans({0})), b = saved("b.map", mapOfScans({1}));
+  std::string damaged = contentOf(b);
+  damaged[damaged.size() - 3] = static_cast<char>(damaged[damaged.size() - 3] ^ 4);
+  folder.write("damaged.map", damaged);
+  const std::size_t files = folder.entryCount();
+  expectThrows<Error>([&] { mergeMapFiles({a, path("damaged.map")}, path("out.map")); }, {"damaged.map: offset "});
+  expectThrows<Error>([&] { mergeMapFiles({a, path("none.map")}, path("out.map")); }, {"none.map: No such file"});
+  expectThrows<Error>([&] { mergeMapFiles({a, b}, path("no/out.map")); }, {"out.map: No such file"});
+  expectThrows<std::invalid_argument>([&] { mergeMapFiles({}, path("out.map")); }, {"no map"});
+  // The tiles are whole, but the header tells another number of points.
+  MapOrigin origin = mapOfScans({1}).origin();
+  ++origin.point_count;
+  const std::string wrong = saved("wrong.map", {origin, mapOfScans({1}).entries()});
+  expectThrows<Error>([&] { mergeMapFiles({a, wrong}, path("out.map")); }, {"wrong.map: offset ", "number of points"});
+  EXPECT_EQ(folder.entryCount(), files + 1);
+}
+
+TEST_F(MapMerge, MapsOfDifferentOriginsDoNotMerge) {
+  const auto at = [&](const std::string& name, double easting_m) {
+    WeightedMapBuilder builder(0.8);
+    builder.setMapOrigin({easting_m, 5.25, 0.0});
+    addCloud(builder, mixedCloud(1, 500), Eigen::Isometry3d::Identity());
+    return saved(name, builder.build());
+  };
+  const std::string a = at("a.map", 1000.0), b = at("b.map", 1000.0), c = at("c.map", 2000.0);
+  const std::string local = saved("local.map", mapOfScans({1})), empty = saved("empty.map", mapOfScans({}));
+  EXPECT_EQ(mergeMapFiles({empty, a, b}).origin().map_origin_m, Eigen::Vector3d(1000.0, 5.25, 0.0));
+  EXPECT_TRUE(bytesOf(mergeMapFiles({empty, a, b})) == bytesOf(mergeMapFiles({a, b, empty})));
+  expectThrows<Error>(
+      [&] {
+        mergeMapFiles({a, c});
+      },
+      {"c.map: does not merge with ", "a.map: ", "map_origin_m = 2000 5.25 0", "1000 5.25 0"});
+  expectThrows<Error>([&] { mergeMapFiles({a, local}); }, {"local.map: does not", "map_origin_m = 0 0 0"});
+  expectThrows<Error>([&] { mergeMapFiles({local, a}); }, {"a.map: does not merge", "map_origin_m"});
+  WeightedMapBuilder builder(0.8);
+  builder.setMapOrigin({2000.0, 5.25, 0.0});
+  expectThrows<std::invalid_argument>([&] { builder.merge(WeightedVoxelMap::load(a)); }, {"map_origin_m"});
 }
 
 TEST_F(MapMerge, NamesTheFilesAndWhatDiffers) {
@@ -133,6 +207,18 @@ TEST_F(MapMerge, WhatThereIsNoRoomForIsRefusedOrToldAsTheMost) {
   expectThrows<std::invalid_argument>([&] { builder.merge(oneVoxel(1, 1, kMostMapScans)); }, {"scan_count"});
   EXPECT_EQ(builder.origin().scan_count, 1U);
   EXPECT_EQ(builder.origin().point_count, kMost);
+  const std::string full = saved("full.map", oneVoxel(kMost, 1, 1)), one = saved("one.map", oneVoxel(1, 1, 1));
+  expectThrows<Error>(
+      [&] {
+        mergeMapFiles({full, one});
+      },
+      {"one.map: does not merge with ", "full.map: ", "2^33 points"});
+  const std::string more = saved("more.map", oneVoxel(1, 1, kMostMapScans));
+  expectThrows<Error>(
+      [&] {
+        mergeMapFiles({one, more});
+      },
+      {"more.map: does not merge with ", "one.map: ", "scan_count"});
 }
 
 TEST_F(MapMerge, TellsTheSoftwareVersionWhereItIsOne) {

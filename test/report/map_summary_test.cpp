@@ -89,6 +89,17 @@ TEST(MapSummary, TellsHowTheMapWasMade) {
   EXPECT_NE(toText(summary).find("segmentation.ground.slope_deg"), std::string::npos) << toText(summary);
 }
 
+TEST(MapSummary, TellsTheOriginAndDeadBytesWhereThereAreAny) {
+  MapOrigin origin = threeVoxels().origin();
+  EXPECT_EQ(toText(summarize(threeVoxels())).find("map_origin_m"), std::string::npos);
+  EXPECT_EQ(toText(summarize(threeVoxels())).find("dead_bytes"), std::string::npos);
+  origin.map_origin_m << 457000.0, 5432000.25, 0.0;
+  MapSummary summary = summarize(WeightedVoxelMap(origin, threeVoxels().entries()));
+  summary.dead_bytes = 77;
+  EXPECT_NE(toText(summary).find("map_origin_m                  [457000.0,5432000.25,0.0]\n"), std::string::npos);
+  EXPECT_NE(toText(summary).find("dead_bytes                    77\n"), std::string::npos);
+}
+
 TEST(MapSummary, SaysWhatIsNotKnown) {
   MapOrigin origin = threeVoxels().origin();
   origin.software_version.clear();

@@ -35,8 +35,9 @@ struct MapImportOptions {
 
 /// A map of clouds and what was met in them.
 struct ImportedMap {
-  WeightedMapBuilder builder;             ///< all points as those of one scan
-  std::array<double, 3> origin_m{};       ///< what was taken off: a position of the clouds is one of the map plus this
+  WeightedMapBuilder builder;  ///< all points as those of one scan
+  std::array<double, 3>
+      origin_m{};  ///< what was taken off: a position of the clouds is one of the map plus this; the map tells it
   std::uint64_t points_read = 0;          ///< in all files
   std::uint64_t points_not_finite = 0;    ///< passed over: NaN or infinite
   std::uint64_t points_at_zero = 0;       ///< passed over: (0, 0, 0), which drivers write for no return
@@ -49,7 +50,7 @@ struct ImportedMap {
 /// pointcloud_map_metadata.yaml (the tiles that it names, in the folder or in its pointcloud_map.pcd), or of all PCD
 /// and PLY files of a folder. Files are read in blocks, twice where heights tell the labels; a compressed PCD file has
 /// to be unpacked as a whole. Coordinates are read as double, and rounded to float once the origin has been taken off.
-/// The map is that of one scan with all points, to the byte.
+/// The map is that of one scan with all points, to the byte, but for the origin that it tells.
 /// @throws Error that names the file and the place: for a missing, damaged or foreign one, one without x, y and z, a
 ///         tile that is missing, or where no point is left. std::invalid_argument for options that do not hold
 SAW_NDT_EXPORT ImportedMap importMap(const std::filesystem::path& cloud, const MapImportOptions& options = {});

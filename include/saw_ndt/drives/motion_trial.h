@@ -8,7 +8,7 @@
 #include "saw_ndt/drives/drive_map.h"
 #include "saw_ndt/drives/scan_source.h"
 #include "saw_ndt/localization/localizer.h"
-#include "saw_ndt/map/ndt_target.h"
+#include "saw_ndt/map/tiled_target.h"
 
 namespace saw_ndt {
 
@@ -24,11 +24,11 @@ struct MotionTrial {
 /// it finds fewer than four, each way has a localizer of its own. A way is taken where likelihood times overlap
 /// (AlignmentResult's) is on average by 1 % and by three standard errors greater than that of every other, the scans as
 /// they are among them.
-/// @param target   of the map, made with options.method.voxels
+/// @param target   of the map, made with options.method.voxels; or an NdtTarget
 /// @param options  of the localizer; its motion_compensation is not looked at
 /// @param T_map_base_initial  at the first scan; nothing: not known
 /// @param scans    is read as far as needed
-SAW_NDT_EXPORT MotionTrial tryMotionCompensation(const NdtTarget& target, const LocalizerOptions& options,
+SAW_NDT_EXPORT MotionTrial tryMotionCompensation(const TiledTarget& target, const LocalizerOptions& options,
                                                  const std::optional<Eigen::Isometry3d>& T_map_base_initial,
                                                  ScanSource& scans);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saw_ndt/common/export.h"
+#include "saw_ndt/map/localization_map.h"
 #include "saw_ndt/map/ndt_target.h"
 #include "saw_ndt/registration/source_points.h"
 
@@ -45,15 +46,19 @@ class SAW_NDT_EXPORT GlobalSearch {
   /// @param target  of a map whose ground is about level underfoot and whose z axis points up
   /// @throws std::invalid_argument where an option does not hold
   explicit GlobalSearch(const NdtTarget& target, const GlobalSearchOptions& options = {});
+  /// In a localization map, by the tables that it has: those of a region are read when that is searched, and those of
+  /// all of it in parts.
+  explicit GlobalSearch(const LocalizationMap& map, const GlobalSearchOptions& options = {});
 
   /// The poses at which most of a scan is found in the map, the best first: each another place or heading.
   /// @param source   in the frame of the base, which is about upright; labels help
   /// @param region   nothing: everywhere
+  /// @throws Error where a table of a localization map is damaged
   /// @param threads  0: all cores; the candidates do not depend on it
   std::vector<PoseCandidate> candidates(const SourcePoints& source, const std::optional<SearchRegion>& region = {},
                                         int threads = 0) const;
 
-  /// Memory of its index (bytes).
+  /// Memory of its index (bytes); 0 where that is a file.
   std::size_t memoryUsage() const;
 
  private:

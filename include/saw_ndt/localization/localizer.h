@@ -15,6 +15,7 @@
 #include "saw_ndt/localization/pose_judge.h"
 #include "saw_ndt/localization/scan_preparation.h"
 #include "saw_ndt/map/ndt_target.h"
+#include "saw_ndt/map/tiled_target.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
 #include "saw_ndt/registration/ndt_aligner.h"
 
@@ -48,6 +49,7 @@ struct SAW_NDT_EXPORT LocalizerOptions {
   /// longer goes on in a thread of its own while further scans come, and what it finds is where the vehicle was when it
   /// began. Results then depend on how fast the machine is.
   double search_budget_ms = std::numeric_limits<double>::infinity();
+  TiledTargetOptions tiles;  ///< where the map is a LocalizationMap: which of its tiles are in memory
   /// Go on where the labels of the map were made by other segmentation options, such as those of another sensor.
   bool allow_other_segmentation = false;
 
@@ -115,11 +117,15 @@ class SAW_NDT_EXPORT Localizer {
   /// its
   ///         labels were made by other segmentation options than these and allow_other_segmentation is not set
   Localizer(const WeightedVoxelMap& map, const LocalizerOptions& options);
-  /// Makes it of a map file, which takes less memory. @throws Error where it is missing or damaged
+  /// Makes it of a map file, which takes less memory; of a LocalizationMap it holds the tiles around the vehicle alone.
+  /// @throws Error where it is missing or damaged
   Localizer(const std::string& map_file, const LocalizerOptions& options);
   /// Shares a target with others.
   /// @param target  made with options.method.voxels: std::invalid_argument where it was not
   Localizer(const NdtTarget& target, const LocalizerOptions& options);
+  /// Takes tiles of a map as the vehicle moves, by options of their own. Poses are those in the whole of that map.
+  /// localize() throws Error where a tile is damaged
+  Localizer(const TiledTarget& target, const LocalizerOptions& options);
   /// With an aligner of one's own.
   /// @throws std::invalid_argument where an option does not hold
   Localizer(SourceAligner aligner, const LocalizerOptions& options);
@@ -144,6 +150,8 @@ class SAW_NDT_EXPORT Localizer {
   const LocalizerOptions& options() const { return options_; }
   /// What is known of the vehicle after the last scan.
   const TrackState& track() const { return prediction_.state(); }
+  /// What became of loading tiles of the map so far; null with an aligner of one's own.
+  const TileLoads* tileLoads() const;
 
  private:
   LocalizerOptions options_;
@@ -162,7 +170,7 @@ class SAW_NDT_EXPORT Localizer {
   struct OngoingSearch;
   struct Moving;
 
-  static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options, const NdtTarget* target);
+  static std::unique_ptr<Moving> makeMoving(const LocalizerOptions& options, bool refines);
   internal::PoseAttempt locate(const SourcePoints& source, ScanInWork& scan);
   internal::PoseAttempt locateMoving(const SourcePoints& measured, const ScanPriors& priors, ScanInWork& scan);
   std::optional<internal::RefinedMotion> refinedAtAnySpeed(const Eigen::Isometry3d& T_map_base_start,

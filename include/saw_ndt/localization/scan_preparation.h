@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct SAW_NDT_EXPORT ScanPreparationOptions {
   ConfidenceOptions confidence;      ///< points of a label whose confidence is 0 are left out
   double source_voxel_size_m = 0.2;  ///< edge of the voxels that thin the points; 0 keeps every point
   Eigen::Isometry3d T_base_lidar = Eigen::Isometry3d::Identity();    ///< mounting of the LiDAR on the vehicle
+  /// Points farther than this from the base, horizontally, are left out (m).
+  double max_reach_m = std::numeric_limits<double>::infinity();
   MotionCompensation motion_compensation = MotionCompensation::OFF;  ///< where ScanPreparation::times_s() come from
   int threads = 0;                                                   ///< 0: all cores; the source does not depend on it
 

@@ -36,9 +36,10 @@ class SAW_NDT_EXPORT NdtTarget {
   explicit NdtTarget(const WeightedVoxelMap& map, const VoxelWeighting& weighting = {}, int threads = 0,
                      CellPrecision precision = CellPrecision::SINGLE);
 
-  /// The target of a map file, as of the map read from it, without ever having the sums of all of its voxels in memory,
-  /// only those of larger ones.
-  /// @throws Error as WeightedVoxelMap::load(), std::invalid_argument where the weighting does not hold
+  /// The target of a map file of either kind. Of a WeightedVoxelMap it is that of the map read from it, without ever
+  /// having the sums of all of its voxels in memory, only those of larger ones. Of a LocalizationMap it is its target.
+  /// @throws Error as WeightedVoxelMap::load() and LocalizationMap, and where one of the latter was made with another
+  /// weighting. std::invalid_argument where the weighting does not hold
   static NdtTarget load(const std::string& path, const VoxelWeighting& weighting = {}, int threads = 0);
 
   const MapOrigin& origin() const;
@@ -61,6 +62,9 @@ class SAW_NDT_EXPORT NdtTarget {
   bool sharesLevelsWith(const NdtTarget& other) const { return levels_ == other.levels_; }
 
   /// For this project's own code.
+  /// @param levels  as planTarget() has them for the weighting, the coarse one last where there is one
+  static NdtTarget ofLevels(const MapOrigin& origin, const VoxelWeighting& weighting,
+                            std::vector<internal::NdtLevel> levels);
   const std::vector<internal::NdtLevel>& levels() const;  ///< those that match, the finest first
   const internal::NdtLevel& fine() const;                 ///< the finest
   const internal::NdtLevel& coarse() const;

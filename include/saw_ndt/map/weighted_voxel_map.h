@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "saw_ndt/common/export.h"
+#include "saw_ndt/map/map_region.h"
 #include "saw_ndt/map/voxel_statistics.h"
 #include "saw_ndt/segmentation/segmentation_options.h"
 
@@ -22,6 +24,9 @@ struct SAW_NDT_EXPORT MapOrigin {
   std::optional<SegmentationOptions> segmentation;
   /// Version of this library that added the points, without line breaks; empty where it is not known.
   std::string software_version;
+  /// Where the map frame's origin lies in the frame that the points were given in, such as UTM: a position there is one
+  /// in the map plus this.
+  Eigen::Vector3d map_origin_m = Eigen::Vector3d::Zero();
 
   /// Throws std::invalid_argument that names the field and its value.
   void check() const;
@@ -59,6 +64,12 @@ class SAW_NDT_EXPORT WeightedVoxelMap {
   void save(const std::string& path) const;
   /// Reads a map file. @throws Error where it is missing, damaged, truncated or foreign
   static WeightedVoxelMap load(const std::string& path);
+  /// Reads the part of a map file that lies in a region, as cropMap() makes it of the whole, and of the file only the
+  /// tiles that can meet it: memory and time do not grow with the rest of the map, but for its directory of 40 bytes a
+  /// tile, which is checked. Damage elsewhere is not found.
+  /// @param threads  0: all cores
+  /// @throws Error where the file or what is read of it is missing, damaged, truncated or foreign
+  static WeightedVoxelMap load(const std::string& path, const MapRegion& region, int threads = 0);
 
  private:
   MapOrigin origin_;

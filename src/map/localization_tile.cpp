@@ -1,0 +1,135 @@
+#include "map/localization_tile.h"
+
+#include <algorithm>
+#include <boost/endian/conversion.hpp>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+namespace saw_ndt::internal {
+namespace {
+
+// The first voxel along an axis whose centre lies in a tile.
+int firstVoxelOf(int tile, double resolution_m) {
+  return static_cast<int>(std::ceil(tile * kLocalizationTile_m / resolution_m - 0.5));
+}
+
+int tileAlong(int voxel, double resolution_m) {
+  int tile = static_cast<int>(std::floor((voxel + 0.5) * resolution_m / kLocalizationTile_m));
+  // Where rounding has the centre on the other side of an edge than firstVoxelOf().
+  if (voxel < firstVoxelOf(tile, resolution_m)) --tile;
+  if (voxel >= firstVoxelOf(tile + 1, resolution_m)) ++tile;
+  return tile;
+}
+
+struct LevelHead {
+  std::uint32_t cell_count = 0;
+  std::int32_t least_z = 0;
+};
+static_assert(sizeof(LevelHead) == 8);
+
+LevelHead inFileOrder(LevelHead head) {
+  boost::endian::native_to_little_inplace(head.cell_count);
+  boost::endian::native_to_little_inplace(head.least_z);
+  return head;
+}
+
+// To or from the byte order of files.
+void reorder(QuantizedCell& cell) {
+  if (boost::endian::order::native == boost::endian::order::little) return;
+  const auto reverse = [](auto& value) { boost::endian::endian_reverse_inplace(value); };
+  for (auto& place : cell.place) reverse(place);
+  for (auto& mean : cell.mean) reverse(mean);
+  for (auto& element : cell.root) reverse(element);
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &cell.greatest_root, sizeof bits);
+  reverse(bits);
+  std::memcpy(&cell.greatest_root, &bits, sizeof bits);
+  reverse(cell.mean_confidence);
+}
+
+}  // namespace
+
+TileCoordinate localizationTileOf(const VoxelCoordinate& voxel, double resolution_m) {
+  return {tileAlong(voxel.x(), resolution_m), tileAlong(voxel.y(), resolution_m)};
+}
+
+TileCoordinate localizationTileAt(double x_m, double y_m) {
+  return {static_cast<int>(std::floor(x_m / kLocalizationTile_m)),
+          static_cast<int>(std::floor(y_m / kLocalizationTile_m))};
+}
+
+void LocalizationTile::add(std::size_t level, const VoxelStatistics& statistics, double resolution_m) {
+  QuantizedCell cell = quantized(statistics, resolution_m);
+  cell.place[0] = static_cast<std::uint16_t>(statistics.voxel.x() - firstVoxelOf(at.x, resolution_m));
+  cell.place[1] = static_cast<std::uint16_t>(statistics.voxel.y() - firstVoxelOf(at.y, resolution_m));
+  levels[level].cells.push_back(cell);
+  levels[level].z.push_back(statistics.voxel.z());
+}
+
+std::size_t LocalizationTile::cellCount() const {
+  std::size_t count = 0;
+  for (const TileLevel& level : levels) count += level.cells.size();
+  return count;
+}
+
+std::string encodedTile(const LocalizationTile& tile) {
+  std::string bytes, cells;
+  for (const TileLevel& level : tile.levels) {
+    const std::int32_t least_z = level.z.empty() ? 0 : *std::min_element(level.z.begin(), level.z.end());
+    const LevelHead head = inFileOrder({static_cast<std::uint32_t>(level.cells.size()), least_z});
+    bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
+    for (std::size_t i = 0; i < level.cells.size(); ++i) {
+      const std::int64_t z = std::int64_t{level.z[i]} - least_z;
+      if (z > std::numeric_limits<std::uint16_t>::max()) {
+        throw std::length_error("the voxels of a tile lie " + std::to_string(z) +
+                                " voxels above each other: a localization map has room for 65535");
+      }
+      QuantizedCell cell = level.cells[i];
+      cell.place[2] = static_cast<std::uint16_t>(z);
+      reorder(cell);
+      cells.append(reinterpret_cast<const char*>(&cell), sizeof cell);
+    }
+  }
+  return bytes + cells;
+}
+
+bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate& at,
+                       const std::vector<double>& resolutions_m, const VoxelWeighting& weighting,
+                       const LocalizationClip& clip, std::vector<NdtCells>& cells) {
+  const std::size_t level_count = resolutions_m.size();
+  if (size < level_count * sizeof(LevelHead)) return false;
+  std::vector<LevelHead> heads(level_count);
+  std::memcpy(heads.data(), bytes, level_count * sizeof(LevelHead));
+  std::size_t cell_count = 0;
+  for (LevelHead& head : heads) {
+    head = inFileOrder(head);
+    cell_count += head.cell_count;
+  }
+  const char* next = bytes + level_count * sizeof(LevelHead);
+  if (size - level_count * sizeof(LevelHead) != cell_count * sizeof(QuantizedCell)) return false;
+  for (std::size_t level = 0; level < level_count; ++level) {
+    const LevelHead& head = heads[level];
+    const double resolution_m = resolutions_m[level];
+    const int x = firstVoxelOf(at.x, resolution_m), y = firstVoxelOf(at.y, resolution_m);
+    const int x_count = firstVoxelOf(at.x + 1, resolution_m) - x, y_count = firstVoxelOf(at.y + 1, resolution_m) - y;
+    if (head.least_z > std::numeric_limits<std::int32_t>::max() - std::numeric_limits<std::uint16_t>::max())
+      return false;
+    NdtCells& of_level = cells[level];
+    for (std::uint32_t i = 0; i < head.cell_count; ++i, next += sizeof(QuantizedCell)) {
+      QuantizedCell cell;
+      std::memcpy(&cell, next, sizeof cell);
+      reorder(cell);
+      if (!isValid(cell) || cell.place[0] >= x_count || cell.place[1] >= y_count) return false;
+      const Eigen::Vector2d middle_m((x + cell.place[0] + 0.5) * resolution_m,
+                                     (y + cell.place[1] + 0.5) * resolution_m);
+      if ((middle_m - clip.centre_m).squaredNorm() > clip.radius_m * clip.radius_m) continue;
+      of_level.voxels.emplace_back(x + cell.place[0], y + cell.place[1], head.least_z + cell.place[2]);
+      of_level.packed.push_back(dequantized(cell, resolution_m, weighting));
+    }
+  }
+  return true;
+}
+
+}  // namespace saw_ndt::internal

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "map/ndt_level.h"
+#include "map/quantized_cell.h"
+#include "saw_ndt/map/voxel_statistics.h"
+
+namespace saw_ndt::internal {
+
+/// Edge of the square tiles that a localization map is cut into, of unbounded height (m).
+constexpr double kLocalizationTile_m = 64.0;
+
+/// Which tile: x and y in tiles.
+struct TileCoordinate {
+  int x = 0;
+  int y = 0;
+
+  friend bool operator==(const TileCoordinate& a, const TileCoordinate& b) { return a.x == b.x && a.y == b.y; }
+  /// The order of a localization map.
+  friend bool operator<(const TileCoordinate& a, const TileCoordinate& b) {
+    return std::pair(a.y, a.x) < std::pair(b.y, b.x);
+  }
+};
+
+/// The tile that holds the centre of a voxel.
+TileCoordinate localizationTileOf(const VoxelCoordinate& voxel, double resolution_m);
+/// The tile that holds a position (m). @pre less than 1e9 m away
+TileCoordinate localizationTileAt(double x_m, double y_m);
+
+/// Voxels are left out whose middle is farther than that from a place, horizontally (m).
+struct LocalizationClip {
+  Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
+  double radius_m = std::numeric_limits<double>::infinity();
+};
+
+/// The voxels of one level in a tile.
+struct TileLevel {
+  std::vector<std::int32_t> z;       ///< of each voxel
+  std::vector<QuantizedCell> cells;  ///< whose place along z is set when they are encoded
+};
+
+/// One tile of a localization map, level after level.
+struct LocalizationTile {
+  TileCoordinate at;
+  std::vector<TileLevel> levels;
+
+  /// Adds a voxel that belongs to the tile to a level whose voxels have that edge. Those of a level keep their order.
+  void add(std::size_t level, const VoxelStatistics& statistics, double resolution_m);
+  std::size_t cellCount() const;
+};
+
+/// The bytes of a tile: for each level u32 cells and i32 least z, then the cells level after level.
+/// @throws std::length_error where the voxels of a level lie 65,536 or more above each other
+std::string encodedTile(const LocalizationTile& tile);
+
+/// Appends the cells of a tile to those of its levels, in the arrangement of a target: the matching levels, then the
+/// coarse one where there is one.
+/// @param resolutions_m  of each level
+/// @return false where the bytes are no such tile; nothing is to be used then
+bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate& at,
+                       const std::vector<double>& resolutions_m, const VoxelWeighting& weighting,
+                       const LocalizationClip& clip, std::vector<NdtCells>& cells);
+
+}  // namespace saw_ndt::internal
