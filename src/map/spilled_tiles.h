@@ -16,7 +16,8 @@ class SpilledTiles {
   /// Makes a file without a name in a folder. @throws Error
   explicit SpilledTiles(const std::filesystem::path& folder);
 
-  /// Adds a part. @param entries  of one tile, at least one. @throws Error with the system's reason, such as a full disk
+  /// Adds a part. @param entries  of one tile, at least one. @throws Error with the system's reason, such as a full
+  /// disk
   void add(const std::vector<LabelledVoxelSums>& entries);
   /// Forgets all parts; the room that they take is not given back.
   void clear() { parts_.clear(); }

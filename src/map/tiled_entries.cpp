@@ -54,9 +54,8 @@ std::uint32_t keyWithinTile(const LabelledVoxelSums& entry) {
 
 // Adds up the entries of one voxel and label, of which there may be several.
 void addUp(std::vector<LabelledVoxelSums>& entries) {
-  std::sort(entries.begin(), entries.end(), [](const LabelledVoxelSums& a, const LabelledVoxelSums& b) {
-    return keyWithinTile(a) < keyWithinTile(b);
-  });
+  std::sort(entries.begin(), entries.end(),
+            [](const LabelledVoxelSums& a, const LabelledVoxelSums& b) { return keyWithinTile(a) < keyWithinTile(b); });
   std::size_t last = 0;
   for (std::size_t i = 1; i < entries.size(); ++i) {
     LabelledVoxelSums& into = entries[last];

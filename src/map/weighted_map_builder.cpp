@@ -233,7 +233,8 @@ std::size_t WeightedMapBuilder::entryCount() const { return table_->size(); }
 WeightedVoxelMap WeightedMapBuilder::build() const& {
   std::vector<LabelledVoxelSums> entries;
   if (hasSpilled()) {
-    forEachTile([&](const std::vector<LabelledVoxelSums>& tile) { entries.insert(entries.end(), tile.begin(), tile.end()); });
+    forEachTile(
+        [&](const std::vector<LabelledVoxelSums>& tile) { entries.insert(entries.end(), tile.begin(), tile.end()); });
   } else {
     entries.reserve(table_->size());
     table_->forEachBatch([&](const std::vector<LabelledVoxelSums>& batch) {

@@ -120,8 +120,8 @@ std::vector<DrivePlan> toldPlans(const boost::mpi::communicator& ranks, std::vec
 }
 
 MapOfRanks buildMapOfRanks(const boost::mpi::communicator& ranks, const std::vector<DrivePlan>& plans,
-                           const DriveOpener& open, const DriveMapOptions& common, const std::filesystem::path& spill_folder,
-                           const std::function<void()>& scan_done) {
+                           const DriveOpener& open, const DriveMapOptions& common,
+                           const std::filesystem::path& spill_folder, const std::function<void()>& scan_done) {
   MapOfRanks map{WeightedMapBuilder(common.resolution_m, plans.front().segmentation), {}, {}, {}};
   map.owned.limitMemory(kMostEntriesInMemory, spill_folder);
   std::optional<ScanDealer> dealer;

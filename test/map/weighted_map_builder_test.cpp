@@ -132,8 +132,10 @@ TEST(WeightedMapBuilder, LimitedMemoryHoldsSoManySumsAndGivesTheSameBytes) {
       front.size = cloud.size() / 2;
       rest.xyz = &cloud[front.size].x;
       rest.size = cloud.size() - front.size;
+      const std::vector<StructuralLabel> rest_labels(labels.end() - static_cast<std::ptrdiff_t>(rest.size),
+                                                     labels.end());
       builder.addScan(front, LabelView(labels), scans[i].T_map_cloud);
-      builder.continueScan(rest, LabelView({labels.begin() + half, labels.end()}), scans[i].T_map_cloud);
+      builder.continueScan(rest, LabelView(rest_labels), scans[i].T_map_cloud);
       most = std::max(most, builder.entryCount());
     }
     return most;

@@ -21,7 +21,7 @@ namespace saw_ndt {
 namespace internal {
 class SpilledTiles;
 class VoxelSumsTable;
-}
+}  // namespace internal
 
 /// Collects labelled points into voxel sums, scan after scan. Memory grows with the voxels met, never with the
 /// points; the result does not depend on the order of scans or on how they were spread over builders.
@@ -85,7 +85,8 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   WeightedVoxelMap build() &&;
 
   // The same of build()'s map without making it, in hardly more memory than the builder has. Both throw
-  // std::invalid_argument where the sums of a voxel that have been in the temporary file are more than there is room for.
+  // std::invalid_argument where the sums of a voxel that have been in the temporary file are more than there is room
+  // for.
 
   /// Calls visit(entries) for each tile that has any, in map order, with its entries in map order.
   /// @param threads  that read, besides the one that visits; 0: all cores
