@@ -65,13 +65,13 @@ class BlockPacker {
         LocalizationTile none;
         none.levels.resize(levels_.size());
         found->second.at = at;
-        found->second.cells = encodedTile(none);
+        found->second.cells = encodedTile(none, resolutions_m_);
       }
       return found->second;
     };
     std::vector<NdtCells> cells(levels_.size());
     for (auto& [at, tile] : tiles) {
-      const std::string bytes = encodedTile(tile);
+      const std::string bytes = encodedTile(tile, resolutions_m_);
       appendDecodedTile(bytes.data(), bytes.size(), at, resolutions_m_, weighting_, {}, cells);
       if (!isIn(block, at, 0)) continue;
       PackedTile& of_tile = packedAt(at);

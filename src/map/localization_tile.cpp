@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
+
+#include "map/voxel_index.h"
 
 namespace saw_ndt::internal {
 namespace {
@@ -49,6 +52,22 @@ void reorder(QuantizedCell& cell) {
   reverse(cell.mean_confidence);
 }
 
+// By bricks of a VoxelIndex, those and the voxels of each by z, y and x.
+std::vector<std::size_t> inBrickOrder(const std::vector<VoxelCoordinate>& voxels) {
+  std::vector<std::size_t> order(voxels.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    for (const int shift : {VoxelIndex::kBrickBits, 0}) {
+      for (const int axis : {2, 1, 0}) {
+        const int at_a = voxels[a][axis] >> shift, at_b = voxels[b][axis] >> shift;
+        if (at_a != at_b) return at_a < at_b;
+      }
+    }
+    return false;
+  });
+  return order;
+}
+
 }  // namespace
 
 TileCoordinate localizationTileOf(const VoxelCoordinate& voxel, double resolution_m) {
@@ -61,11 +80,8 @@ TileCoordinate localizationTileAt(double x_m, double y_m) {
 }
 
 void LocalizationTile::add(std::size_t level, const VoxelStatistics& statistics, double resolution_m) {
-  QuantizedCell cell = quantized(statistics, resolution_m);
-  cell.place[0] = static_cast<std::uint16_t>(statistics.voxel.x() - firstVoxelOf(at.x, resolution_m));
-  cell.place[1] = static_cast<std::uint16_t>(statistics.voxel.y() - firstVoxelOf(at.y, resolution_m));
-  levels[level].cells.push_back(cell);
-  levels[level].z.push_back(statistics.voxel.z());
+  levels[level].voxels.push_back(statistics.voxel);
+  levels[level].cells.push_back(quantized(statistics, resolution_m));
 }
 
 std::size_t LocalizationTile::cellCount() const {
@@ -74,19 +90,26 @@ std::size_t LocalizationTile::cellCount() const {
   return count;
 }
 
-std::string encodedTile(const LocalizationTile& tile) {
+std::string encodedTile(const LocalizationTile& tile, const std::vector<double>& resolutions_m) {
   std::string bytes, cells;
-  for (const TileLevel& level : tile.levels) {
-    const std::int32_t least_z = level.z.empty() ? 0 : *std::min_element(level.z.begin(), level.z.end());
+  for (std::size_t k = 0; k < tile.levels.size(); ++k) {
+    const TileLevel& level = tile.levels[k];
+    const int x = firstVoxelOf(tile.at.x, resolutions_m[k]), y = firstVoxelOf(tile.at.y, resolutions_m[k]);
+    const std::vector<std::size_t> order = inBrickOrder(level.voxels);
+    int least_z = order.empty() ? 0 : level.voxels.front().z();
+    for (const VoxelCoordinate& voxel : level.voxels) least_z = std::min(least_z, voxel.z());
     const LevelHead head = inFileOrder({static_cast<std::uint32_t>(level.cells.size()), least_z});
     bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
-    for (std::size_t i = 0; i < level.cells.size(); ++i) {
-      const std::int64_t z = std::int64_t{level.z[i]} - least_z;
+    for (const std::size_t i : order) {
+      const VoxelCoordinate& voxel = level.voxels[i];
+      const std::int64_t z = std::int64_t{voxel.z()} - least_z;
       if (z > std::numeric_limits<std::uint16_t>::max()) {
         throw std::length_error("the voxels of a tile lie " + std::to_string(z) +
                                 " voxels above each other: a localization map has room for 65535");
       }
       QuantizedCell cell = level.cells[i];
+      cell.place[0] = static_cast<std::uint16_t>(voxel.x() - x);
+      cell.place[1] = static_cast<std::uint16_t>(voxel.y() - y);
       cell.place[2] = static_cast<std::uint16_t>(z);
       reorder(cell);
       cells.append(reinterpret_cast<const char*>(&cell), sizeof cell);

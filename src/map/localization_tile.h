@@ -41,8 +41,8 @@ struct LocalizationClip {
 
 /// The voxels of one level in a tile.
 struct TileLevel {
-  std::vector<std::int32_t> z;       ///< of each voxel
-  std::vector<QuantizedCell> cells;  ///< whose place along z is set when they are encoded
+  std::vector<VoxelCoordinate> voxels;
+  std::vector<QuantizedCell> cells;  ///< whose places are set when they are encoded
 };
 
 /// One tile of a localization map, level after level.
@@ -50,14 +50,16 @@ struct LocalizationTile {
   TileCoordinate at;
   std::vector<TileLevel> levels;
 
-  /// Adds a voxel that belongs to the tile to a level whose voxels have that edge. Those of a level keep their order.
+  /// Adds a voxel that belongs to the tile to a level whose voxels have that edge.
   void add(std::size_t level, const VoxelStatistics& statistics, double resolution_m);
   std::size_t cellCount() const;
 };
 
-/// The bytes of a tile: for each level u32 cells and i32 least z, then the cells level after level.
+/// The bytes of a tile: for each level u32 cells and i32 least z, then the cells level after level, those of a level by
+/// bricks of 8 x 8 x 8, in which VoxelIndex has them.
+/// @param resolutions_m  of each level
 /// @throws std::length_error where the voxels of a level lie 65,536 or more above each other
-std::string encodedTile(const LocalizationTile& tile);
+std::string encodedTile(const LocalizationTile& tile, const std::vector<double>& resolutions_m);
 
 /// Appends the cells of a tile to those of its levels, in the arrangement of a target: the matching levels, then the
 /// coarse one where there is one.

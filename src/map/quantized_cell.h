@@ -12,7 +12,7 @@ namespace saw_ndt::internal {
 ///   root of the inverse covariance, an upper triangle R with R^T R = C^-1: each element 2^-16 of the largest, so that
 ///                     no direction of a voxel whose eigenvalues differ by 100 has a curvature that is off by 0.2 %
 ///   mean confidence   2^-17, and so the weight but for alpha
-///   share of ground   2^-9
+///   share of ground   1/510
 /// All of them are positive semidefinite, whatever the bytes.
 struct QuantizedCell {
   std::uint16_t place[3];  ///< in its tile (voxels)

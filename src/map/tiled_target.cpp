@@ -102,23 +102,17 @@ const NdtTarget& TiledTarget::take(Window window) {
     loads_.least_radius_m =
         loads_.least_radius_m == 0.0 ? window.loaded_radius_m : std::min(loads_.least_radius_m, window.loaded_radius_m);
   }
-  constexpr std::size_t kMostWindows = 2;
-  windows_.insert(windows_.begin(), std::move(window));
-  if (windows_.size() > kMostWindows) windows_.pop_back();
-  return windows_.front().target;
+  window_ = std::move(window);
+  return window_->target;
 }
 
 NdtTarget TiledTarget::at(const Eigen::Vector3d& position_m, double reach_m) {
   if (whole_) return *whole_;
   const Eigen::Vector2d position = position_m.head<2>();
   const double needed_m = neededReach(reach_m);
-  for (auto window = windows_.begin(); window != windows_.end(); ++window) {
-    if (!window->covers(position, needed_m)) continue;
-    std::rotate(windows_.begin(), window, window + 1);
-    return windows_.front().target;
-  }
+  if (window_ && window_->covers(position, needed_m)) return window_->target;
   const Stopwatch wait;
-  const bool is_first = loads_.loads == 0;
+  const bool is_first = loads_.loads == 0, is_wide = reach_m > options_.radius_m;
   bool waits = true;
   Window window;
   if (ahead_ && ahead_->plan.covers(position, needed_m)) {
@@ -126,9 +120,12 @@ NdtTarget TiledTarget::at(const Eigen::Vector3d& position_m, double reach_m) {
     waits = ahead.window.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
     window = ahead.window.get();
   } else {
+    window_.reset();
     window = loaded(*map_, planAround(position, needed_m), options_.most_bytes, 0);
   }
-  if (waits && !is_first) {
+  if (is_wide) {
+    ++loads_.wide_loads;
+  } else if (waits && !is_first) {
     ++loads_.waits;
     loads_.longest_wait_ms = std::max(loads_.longest_wait_ms, wait.milliseconds());
   }
@@ -144,10 +141,7 @@ void TiledTarget::loadAhead(const Eigen::Vector3d& position_m, const Eigen::Vect
   // No further, or tiles around a point ahead would have to be loaded again at once.
   way *= std::min(1.0, options_.hysteresis_m / std::max(way.norm(), 1e-9));
   const Eigen::Vector2d soon = position + way;
-  const auto isCovered = [&](const Window& window) {
-    return window.covers(position, needed_m) && window.covers(soon, needed_m);
-  };
-  if (std::any_of(windows_.begin(), windows_.end(), isCovered)) return;
+  if (window_ && window_->covers(position, needed_m) && window_->covers(soon, needed_m)) return;
   if (ahead_) {
     const bool is_ready = ahead_->window.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     if (!is_ready || ahead_->plan.covers(soon, needed_m)) return;

@@ -30,22 +30,46 @@ void forEachBrickWith(const VoxelCoordinate& voxel, const Visit& visit) {
   }
 }
 
+// The numbers of the bricks around one, as far as they are known.
+class BricksAround {
+ public:
+  static constexpr std::uint32_t kUnknown = 0xFFFFFFFFU;
+
+  void moveTo(const VoxelCoordinate& voxel) {
+    const Eigen::Vector3i middle(voxel.x() >> VoxelIndex::kBrickBits, voxel.y() >> VoxelIndex::kBrickBits,
+                                 voxel.z() >> VoxelIndex::kBrickBits);
+    if (known_ && middle == middle_) return;
+    known_ = true;
+    middle_ = middle;
+    numbers_.fill(kUnknown);
+  }
+  /// Of the middle one, or one beside it.
+  std::uint32_t& number(const Eigen::Vector3i& at) {
+    const Eigen::Vector3i from = at - middle_;
+    return numbers_[static_cast<std::size_t>((from.z() * 3 + from.y()) * 3 + from.x() + 13)];
+  }
+
+ private:
+  bool known_ = false;
+  Eigen::Vector3i middle_ = Eigen::Vector3i::Zero();
+  std::array<std::uint32_t, 27> numbers_{};
+};
+
 }  // namespace
 
 VoxelIndex::VoxelIndex(const std::vector<VoxelCoordinate>& voxels) : slots_(64), voxel_count_(voxels.size()) {
-  // Voxels that follow each other often touch the same brick. Which ones they touch is kept for the second pass.
+  // Voxels that follow each other are often of the same brick: the numbers of those around it are kept. Which ones a
+  // voxel touches is kept for the second pass.
   std::vector<std::uint32_t> touched;
   touched.reserve(2 * voxels.size());
-  Eigen::Vector3i latest = Eigen::Vector3i::Zero();
-  std::uint32_t number_of_latest = 0;
+  BricksAround around;
   for (const VoxelCoordinate& voxel : voxels) {
+    around.moveTo(voxel);
     forEachBrickWith(voxel, [&](const Eigen::Vector3i& at, std::ptrdiff_t row, std::uint32_t x) {
-      if (touched.empty() || at != latest) {
-        number_of_latest = numberOfMadeBrick(at);
-        latest = at;
-      }
-      bricks_[number_of_latest].rows[row].bits_ |= 1U << x;
-      touched.push_back(number_of_latest);
+      std::uint32_t& number = around.number(at);
+      if (number == BricksAround::kUnknown) number = numberOfMadeBrick(at);
+      bricks_[number].rows[row].bits_ |= 1U << x;
+      touched.push_back(number);
     });
   }
   std::uint32_t total = 0;

@@ -38,6 +38,7 @@ nlohmann::ordered_json toJson(const StateShare& share) { return {{"scans", share
 
 nlohmann::ordered_json toJson(const TileLoads& loads) {
   nlohmann::ordered_json json = {{"loads", loads.loads},
+                                 {"wide_loads", loads.wide_loads},
                                  {"waits", loads.waits},
                                  {"longest_wait_ms", loads.longest_wait_ms},
                                  {"first_load_ms", loads.first_load_ms},

@@ -44,7 +44,7 @@ void expectWithinBounds(const VoxelWeighting& weighting, double least_eigenvalue
     EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(curvature).eigenvalues()[0], -1e-6 * curvature.trace());
     EXPECT_NEAR(cell.mean_confidence, exact.mean_confidence, 0x1p-17 + 1e-7);
     EXPECT_NEAR(cell.weight, exact.weight, weighting.alpha(exact.structure_class) * 0x1p-17 + 1e-6);
-    EXPECT_NEAR(cell.ground_share, exact.ground_share, 0x1p-9 + 1e-6);
+    EXPECT_NEAR(cell.ground_share, exact.ground_share, 1.0 / 510.0 + 1e-6);
   }
 }
 

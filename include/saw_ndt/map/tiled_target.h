@@ -5,7 +5,6 @@
 #include <future>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "saw_ndt/common/export.h"
 #include "saw_ndt/map/localization_map.h"
@@ -18,7 +17,7 @@ struct SAW_NDT_EXPORT TiledTargetOptions {
   double radius_m = 100.0;     ///< around the vehicle; points of scans that lie farther away are left out
   double hysteresis_m = 20.0;  ///< how far the vehicle goes until others are needed
   double lookahead_s = 3.0;    ///< how long before that they are loaded, no further ahead than hysteresis_m
-  /// Bound of the memory of the voxels around one place (bytes); up to three such sets are there at a time. Where it
+  /// Bound of the memory of the voxels around one place (bytes); two such sets are there while one is loaded. Where it
   /// would be exceeded the radius is smaller, and points of scans beyond it meet no voxels.
   std::size_t most_bytes = std::size_t{256} << 20U;
 
@@ -29,7 +28,8 @@ struct SAW_NDT_EXPORT TiledTargetOptions {
 /// What became of loading tiles.
 struct TileLoads {
   std::size_t loads = 0;         ///< sets of tiles that were loaded
-  std::size_t waits = 0;         ///< of them, those that had to be waited for, but for the first
+  std::size_t wide_loads = 0;    ///< of them, those that reach farther, to compare a pose in doubt; scans waited
+  std::size_t waits = 0;         ///< of the others, those that had to be waited for, but for the first
   double longest_wait_ms = 0.0;  ///< but for the first
   double first_load_ms = 0.0;
   double longest_load_ms = 0.0;
@@ -98,7 +98,7 @@ class SAW_NDT_EXPORT TiledTarget {
   TiledTargetOptions options_;
   std::optional<NdtTarget> whole_;
   std::optional<LocalizationMap> map_;
-  std::vector<Window> windows_;  // the one used last first, at most two
+  std::optional<Window> window_;  // the one in use
   std::optional<Loading> ahead_;
   double largest_voxel_m_ = 0.0;
   TileLoads loads_;
