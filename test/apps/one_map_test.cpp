@@ -50,7 +50,7 @@ TEST_F(OneMap, OfScansInAnyOrder) {
       std::shuffle(plans[i].scans.begin(), plans[i].scans.end(), random);
     }
     const auto open = [&](int drive) -> const Recording& { return *recordings[drive]; };
-    internal::buildMapOfDrives(plans, open, common, {}).save((folder.path() / "shuffled.map").string());
+    internal::buildMapOfDrives(plans, open, common, folder.path(), {}).save((folder.path() / "shuffled.map").string());
     EXPECT_TRUE(contentOf(folder.path() / "shuffled.map") == contentOf(folder.path() / "a.map"));
   }
 }

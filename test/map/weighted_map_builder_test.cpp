@@ -11,6 +11,7 @@
 #include "expect_throws.h"
 #include "map/voxel_sums_table.h"
 #include "map_fixtures.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/version.h"
 #include "temporary_folder.h"
