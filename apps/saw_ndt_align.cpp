@@ -117,12 +117,7 @@ Eigen::Isometry3d searched(const Arguments& arguments, const saw_ndt::NdtTarget&
   options.acceptance.min_overlap = arguments.min_overlap;
   options.acceptance.min_overlap_in_doubt = arguments.min_overlap;
   options.acceptance.min_overlap_anywhere = arguments.min_overlap;
-  const auto aligner = [&target, &options, ndt = saw_ndt::NdtAligner()](const saw_ndt::SourcePoints& points,
-                                                                        const Eigen::Isometry3d& guess) mutable {
-    return ndt.align(target, points, guess, options.alignment);
-  };
-  const saw_ndt::internal::PoseAttempt found =
-      saw_ndt::internal::PoseFinder(aligner, target, options).findAnywhere(source);
+  const saw_ndt::internal::PoseAttempt found = saw_ndt::internal::PoseFinder(target, options).findAnywhere(source);
   if (found.accepted()) return found.alignment.T_map_source;
   throw saw_ndt::Error(arguments.source_file, "",
                        "was not found in " + arguments.target_file + ": " + saw_ndt::toString(found.acceptance) +
