@@ -325,7 +325,7 @@ TEST(MapDiff, SaysWhatDoesNotHold) {
   MapOrigin elsewhere = map.origin();
   elsewhere.map_origin_m.x() = 500000.0;
   expectThrows<std::invalid_argument>([&] { diffMaps(map, WeightedVoxelMap(elsewhere, {})); },
-                                      {"map_origin_m = ", "500000", "must be that of the other map"});
+                                      {"map_origin_m = 5e+05 0 0: must be that of the other map, 0 0 0"});
   const auto withOption = [&map](auto set) {
     MapDiffOptions options;
     set(options);
