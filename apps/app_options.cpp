@@ -272,8 +272,12 @@ void AppOptions::setPositionals(const std::vector<std::string>& values) {
     if (taken == values.size()) {
       if (!positional.optional) throw UsageError("missing " + positional.name);
     } else if (positional.list != nullptr) {
-      positional.list->assign(values.begin() + static_cast<std::ptrdiff_t>(taken), values.end());
-      taken = values.size();
+      // Those behind the list have a value each.
+      const auto behind = static_cast<std::size_t>(&positionals_.back() - &positional);
+      const std::size_t end = std::max(taken + 1, values.size() - std::min(behind, values.size()));
+      positional.list->assign(values.begin() + static_cast<std::ptrdiff_t>(taken),
+                              values.begin() + static_cast<std::ptrdiff_t>(end));
+      taken = end;
     } else {
       *positional.value = values[taken++];
     }

@@ -27,7 +27,7 @@ class AppOptions {
 
   /// Declares the next file name or the like; optional ones come after all others.
   void addPositional(const std::string& name, std::string* value, const std::string& help, bool optional = false);
-  /// Declares that one or more such names end the positionals.
+  /// Declares one or more such names. There is one list at most; those that are declared behind it are the last names.
   void addPositionalList(const std::string& name, std::vector<std::string>* values, const std::string& help);
 
   // The placeholder stands for the value in the help and states its unit, such as METRES.

@@ -23,10 +23,10 @@ void RecordingArgument::addTo(AppOptions& app, bool with_poses) {
   bin_fields_.addTo(app);
 }
 
-std::unique_ptr<Recording> RecordingArgument::open(const std::string& path) const {
+std::unique_ptr<Recording> RecordingArgument::open(const std::string& path, const std::string& poses_file) const {
   RecordingOptions options = values_;
   options.bin_fields = bin_fields_.value();
-  options.poses_file = poses_file_;
+  options.poses_file = poses_file;
   options.velodyne_calibration = velodyne_calibration_;
   return checkedUsage([&] { return openRecording(path, options); });
 }

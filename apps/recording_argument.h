@@ -20,8 +20,10 @@ class RecordingArgument {
   /// Declares them, -poses but for apps that take several recordings.
   void addTo(AppOptions& app, bool with_poses = true);
 
-  /// Opens a recording. @throws Error, UsageError
-  std::unique_ptr<Recording> open(const std::string& path) const;
+  /// Opens a recording, with the poses of -poses. @throws Error, UsageError
+  std::unique_ptr<Recording> open(const std::string& path) const { return open(path, poses_file_); }
+  /// The same with the poses of a file, or with its own for an empty name.
+  std::unique_ptr<Recording> open(const std::string& path, const std::string& poses_file) const;
 
   /// -velodyne-calibration, empty where it is not given.
   const std::string& velodyneCalibration() const { return velodyne_calibration_; }

@@ -17,13 +17,13 @@ constexpr char kDescription[] =
 void merge(const std::string& merged_file, const std::vector<std::string>& map_files, int threads) {
   // Found out before the long work: whether the map can be written. This leaves nothing behind.
   { const saw_ndt::internal::AtomicOutput probe(merged_file); }
-  std::uint64_t dead_bytes = 0;
-  for (const std::string& map_file : map_files) dead_bytes += saw_ndt::deadBytesOfMapFile(map_file);
-  const saw_ndt::WrittenMap map = saw_ndt::mergeMapFiles(map_files, merged_file, threads);
+  const saw_ndt::MergedMap map = saw_ndt::mergeMapFiles(map_files, merged_file, threads);
   std::cout << merged_file << ": " << map.voxel_count << " voxels of " << map.origin.resolution_m << " m from "
             << map.origin.point_count << " points of " << map.origin.scan_count << " scans of " << map_files.size()
             << (map_files.size() == 1 ? " map\n" : " maps\n");
-  if (dead_bytes != 0) std::cout << "left out: " << dead_bytes << " dead bytes that updates had replaced\n";
+  if (map.dead_bytes_left_out != 0) {
+    std::cout << "left out: " << map.dead_bytes_left_out << " dead bytes that updates had replaced\n";
+  }
 }
 
 void update(const std::string& map_file, const std::vector<std::string>& added_files, int threads) {

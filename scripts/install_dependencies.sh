@@ -9,6 +9,7 @@ packages=(
   libpcl-dev libeigen3-dev libboost-dev libboost-filesystem-dev libboost-program-options-dev libboost-system-dev zlib1g-dev
   nlohmann-json3-dev libhwy-dev libembree-dev
   libpcap-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libfastcdr-dev libyaml-cpp-dev
+  libboost-mpi-dev libopenmpi-dev openmpi-bin
   libgtest-dev libbenchmark-dev
   gnuplot-nox
   python3 python3-numpy python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-std-msgs python3-tf2-msgs

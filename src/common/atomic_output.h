@@ -22,6 +22,9 @@ class SAW_NDT_EXPORT AtomicOutput {
   /// Binary, seekable, in the classic locale whatever the global one is.
   std::ostream& stream();
 
+  /// The temporary file, which other processes may write parts of until commit().
+  const std::filesystem::path& temporary() const { return temporary_; }
+
   /// Flushes, checks that everything was written and renames. Throws Error with the system's reason, such as a full
   /// disk; to be called once.
   void commit();

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "common/executor.h"
+#include "drives/drive_plan.h"
 #include "drives/reference_motion.h"
 #include "localization/motion_compensation.h"
 #include "saw_ndt/common/error.h"
@@ -23,13 +24,9 @@ class SharedSource {
   bool next(RecordedScan& scan) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (failure_) return false;
-    std::string reason;
     while (scans_.next(scan)) {
-      reason = failureOf(scan);
-      if (reason.empty()) {
-        any_ = true;
-        return true;
-      }
+      const std::string reason = failureOf(scan);
+      if (reason.empty()) return true;
       if (!left_out_) {
         // Scans come in order, so that this is the first bad one.
         failure_ = std::make_exception_ptr(Error(reason));
@@ -37,8 +34,6 @@ class SharedSource {
       }
       left_out_(reason);
     }
-    if (!any_ && !reason.empty())
-      failure_ = std::make_exception_ptr(Error(reason + ", and no other scan is any better"));
     return false;
   }
   /// A scan that next() gave is an error.
@@ -58,7 +53,6 @@ class SharedSource {
 
   ScanSource& scans_;
   const std::function<void(const std::string&)>& left_out_;
-  bool any_ = false;
   std::mutex mutex_;
   std::exception_ptr failure_;
 };
@@ -108,8 +102,23 @@ void addScans(ScanSource& scans, const DriveMapOptions& options, MovedVoxels& mo
 
 WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,
                                  const std::function<void()>& scan_done) {
-  options.check();
   WeightedMapBuilder map(options.resolution_m, options.segmentation);
+  std::string last_failure;
+  DriveMapOptions noting = options;
+  if (options.scan_left_out) {
+    noting.scan_left_out = [&](const std::string& failure) {
+      last_failure = failure;
+      options.scan_left_out(failure);
+    };
+  }
+  addScans(scans, noting, map, scan_done);
+  internal::requireAnyScan(map.origin(), last_failure);
+  return map;
+}
+
+void addScans(ScanSource& scans, const DriveMapOptions& options, WeightedMapBuilder& map,
+              const std::function<void()>& scan_done) {
+  options.check();
   SharedSource source(scans, options.scan_left_out);
   // Threads read and segment scans. What takes memory, the sums, there is once, and a scan is added to it in a fraction
   // of the time that it takes to segment.
@@ -139,7 +148,6 @@ WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& optio
     }
   });
   source.rethrow();
-  return map;
 }
 
 }  // namespace saw_ndt

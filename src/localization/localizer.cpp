@@ -16,6 +16,7 @@
 #include "localization/preparation_options.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
+#include "segmentation/segmentation_fields.h"
 
 namespace saw_ndt {
 
@@ -46,17 +47,6 @@ LocalizerOptions withMethod(LocalizerOptions options) {
   options.alignment.covariance_scale = options.method.covariance_scale;
   options.alignment.evaluate_likelihoods = true;
   options.alignment.min_overlap = options.acceptance.min_overlap;
-  return options;
-}
-
-// A map may be of another vehicle: where its LiDAR was and what of it was seen does not matter.
-SegmentationOptions mountedAs(SegmentationOptions options, const SegmentationOptions& other) {
-  options.mounting_pitch_deg = other.mounting_pitch_deg;
-  options.mounting_roll_deg = other.mounting_roll_deg;
-  options.min_range_m = other.min_range_m;
-  options.max_range_m = other.max_range_m;
-  options.vehicle_box_m = other.vehicle_box_m;
-  options.ground.sensor_height_m = other.ground.sensor_height_m;
   return options;
 }
 

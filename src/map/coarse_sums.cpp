@@ -50,7 +50,7 @@ void CoarseSums::add(const LabelledVoxelSums* first, const LabelledVoxelSums* la
 }
 
 void CoarseSums::add(const CoarseSums& other) {
-  table_.add(other.table_.entries(),
+  table_.add(other.table_,
              [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { countScans(from, into); });
 }
 

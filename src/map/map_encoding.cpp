@@ -89,6 +89,17 @@ MapTileRecord encodeTile(const LabelledVoxelSums* first, const LabelledVoxelSums
   return tile;
 }
 
+LabelledVoxelSums decodeEntry(const MapEntryLayout& layout, const Eigen::Vector3i& tile) {
+  LabelledVoxelSums entry;
+  for (int axis = 0; axis < 3; ++axis) entry.voxel[axis] = tile[axis] * kTileSize + layout.place[axis];
+  entry.label = static_cast<StructuralLabel>(layout.label);
+  entry.sums.count = layout.count.value();
+  entry.scan_count = layout.scan_count.value();
+  for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) entry.sums.sum[i] = layout.sum[i].value();
+  for (std::size_t i = 0; i < entry.sums.product.size(); ++i) entry.sums.product[i] = layout.product[i].value();
+  return entry;
+}
+
 std::uint64_t bytesOfEntries(std::uint64_t entry_count) { return entry_count * sizeof(MapEntryLayout); }
 
 std::string encodeFront(const MapOrigin& origin, const std::vector<MapTileRecord>& tiles) {

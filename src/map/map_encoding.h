@@ -11,12 +11,17 @@
 
 namespace saw_ndt::internal {
 
+struct MapEntryLayout;
+
 /// Entries of one tile as the bytes that stand in a map file.
 /// @param first, last  entries of one tile in map order, at least one
 /// @param bytes        replaced
 /// @return the tile's record, but for its offset
 SAW_NDT_EXPORT MapTileRecord encodeTile(const LabelledVoxelSums* first, const LabelledVoxelSums* last,
                                         std::vector<char>& bytes);
+
+/// An entry as it stands there, whether it can be one or not.
+SAW_NDT_EXPORT LabelledVoxelSums decodeEntry(const MapEntryLayout& layout, const Eigen::Vector3i& tile);
 
 /// How many bytes of a map file so many entries are.
 SAW_NDT_EXPORT std::uint64_t bytesOfEntries(std::uint64_t entry_count);

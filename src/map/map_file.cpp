@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "map/map_encoding.h"
 #include "map/map_file_layout.h"
 
 namespace saw_ndt::internal {
@@ -38,15 +39,8 @@ bool canBeSums(const VoxelSums& sums) {
 
 bool decoded(const MapEntryLayout& layout, const Eigen::Vector3i& tile, LabelledVoxelSums& entry) {
   bool valid = layout.label < kStructuralLabelCount;
-  for (int axis = 0; axis < 3; ++axis) {
-    valid = valid && layout.place[axis] < kTileSize;
-    entry.voxel[axis] = tile[axis] * kTileSize + layout.place[axis];
-  }
-  entry.label = static_cast<StructuralLabel>(layout.label);
-  entry.sums.count = layout.count.value();
-  entry.scan_count = layout.scan_count.value();
-  for (std::size_t i = 0; i < entry.sums.sum.size(); ++i) entry.sums.sum[i] = layout.sum[i].value();
-  for (std::size_t i = 0; i < entry.sums.product.size(); ++i) entry.sums.product[i] = layout.product[i].value();
+  for (int axis = 0; axis < 3; ++axis) valid = valid && layout.place[axis] < kTileSize;
+  entry = decodeEntry(layout, tile);
   return valid && canBeSums(entry.sums);
 }
 

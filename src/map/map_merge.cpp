@@ -28,11 +28,12 @@ WeightedVoxelMap mergeMapFiles(const std::vector<std::string>& paths, int thread
   return {files.origin(), std::move(entries)};
 }
 
-WrittenMap mergeMapFiles(const std::vector<std::string>& paths, const std::string& out_path, int threads) {
+MergedMap mergeMapFiles(const std::vector<std::string>& paths, const std::string& out_path, int threads) {
   requireSome(paths);
   TileMerge files(paths);
-  WrittenMap written;
+  MergedMap written;
   written.origin = files.origin();
+  written.dead_bytes_left_out = files.deadBytes();
   files.forEachTile([&written](const TileSources&) { ++written.tile_count; });
   MapFileWriter writer(out_path, written.origin, written.tile_count);
   files.mergeTiles(false, true, threads, [&](const TileSources&, const MergedTile& tile) {

@@ -107,6 +107,12 @@ void TileMerge::failToMerge(std::size_t file, const std::string& reason) const {
   throw Error(files_[file]->path(), "", "does not merge with " + files_.front()->path() + ": " + reason);
 }
 
+std::uint64_t TileMerge::deadBytes() const {
+  std::uint64_t bytes = 0;
+  for (const auto& file : files_) bytes += file->front().deadBytes();
+  return bytes;
+}
+
 void TileMerge::forEachTile(const std::function<void(const TileSources&)>& visit) const {
   TileSources tile;
   for (Walk walk(files_); walk.next(tile);) visit(tile);

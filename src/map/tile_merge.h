@@ -45,6 +45,8 @@ class TileMerge {
   /// What the merged map is made of.
   const MapOrigin& origin() const { return origin_; }
   const MapFileReader& file(std::size_t file) const { return *files_[file]; }
+  /// Of all files, see MapFront.
+  std::uint64_t deadBytes() const;
   /// Whether any file but the first one holds something.
   bool othersHold() const { return others_hold_; }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
+#include <memory>
 #include <vector>
 
 #include "saw_ndt/map/voxel_sums.h"
@@ -19,42 +19,62 @@ inline std::uint64_t hashCoordinate(const Eigen::Vector3i& c) {
   return h ^ (h >> 32);
 }
 
-/// Sums by voxel and label: a hash table of 8-byte slots that point into a flat array of entries. A slot holds the hash
-/// too, so that looking for one entry rarely touches another.
+/// Sums by voxel and label: a hash table of 8-byte slots that point into chunks of entries. A slot holds the hash too,
+/// so that looking for one entry rarely touches another. Entries never move: a table that grows takes the memory of one
+/// more chunk, not of a second copy.
 class VoxelSumsTable {
  public:
   VoxelSumsTable() : slots_(kMinSlots) {}
+  VoxelSumsTable(const VoxelSumsTable& other) { *this = other; }
+  VoxelSumsTable& operator=(const VoxelSumsTable& other) {
+    slots_ = other.slots_;
+    chunks_.clear();
+    for (const Chunk& chunk : other.chunks_) {
+      Chunk& copy = newChunk();
+      copy.entries.insert(copy.entries.end(), chunk.entries.begin(), chunk.entries.end());
+      copy.last_scan.insert(copy.last_scan.end(), chunk.last_scan.begin(), chunk.last_scan.end());
+    }
+    return *this;
+  }
+  VoxelSumsTable(VoxelSumsTable&&) noexcept = default;
+  VoxelSumsTable& operator=(VoxelSumsTable&&) noexcept = default;
+
+  /// How many entries there are. Their places are 0 to size() - 1, in the order in which their voxels were first met.
+  std::size_t size() const {
+    return chunks_.empty() ? 0 : (chunks_.size() - 1) * kChunk + chunks_.back().entries.size();
+  }
 
   /// The entry of `label` in `voxel`; null where there is none.
   const LabelledVoxelSums* find(const VoxelCoordinate& voxel, StructuralLabel label) const {
     const Slot& slot = slots_[slotOf(voxel, label, hashOf(voxel, label))];
-    return slot.place == kEmpty ? nullptr : &entries_[slot.place];
+    return slot.place == kEmpty ? nullptr : &entry(slot.place);
   }
 
-  /// The place in entries() of `label` in `voxel`, made empty where there is none yet.
+  /// The place of the entry of `label` in `voxel`, which is made empty where there is none yet.
   std::size_t placeOf(const VoxelCoordinate& voxel, StructuralLabel label) {
     const std::uint32_t hash = hashOf(voxel, label);
     const std::size_t slot = slotOf(voxel, label, hash);
     if (slots_[slot].place != kEmpty) return slots_[slot].place;
-    const std::size_t place = entries_.size();
+    const std::size_t place = size();
     slots_[slot] = {hash, static_cast<std::uint32_t>(place)};
-    entries_.push_back({voxel, label, {}, 0});
-    last_scan_.push_back(0);
+    Chunk& chunk = place % kChunk == 0 ? newChunk() : chunks_.back();
+    chunk.entries.push_back({voxel, label, {}, 0});
+    chunk.last_scan.push_back(0);
     if (2 * (place + 1) > slots_.size()) grow();
     return place;
   }
 
-  /// The sums at a place in entries().
-  VoxelSums& sums(std::size_t place) { return entries_[place].sums; }
+  LabelledVoxelSums& entry(std::size_t place) { return chunks_[place / kChunk].entries[place % kChunk]; }
+  const LabelledVoxelSums& entry(std::size_t place) const { return chunks_[place / kChunk].entries[place % kChunk]; }
 
-  LabelledVoxelSums& entry(std::size_t place) { return entries_[place]; }
   /// Counts a scan, by its number from 1 on, towards the entry at a place, once however often it is told; to be called
   /// before the scan's points are added. Where the scans of points before are not known, it stays so.
   void meet(std::size_t place, std::uint32_t scan) {
-    if (last_scan_[place] == scan) return;
-    last_scan_[place] = scan;
-    LabelledVoxelSums& entry = entries_[place];
-    if (entry.scan_count != 0 || entry.sums.count == 0) ++entry.scan_count;
+    std::uint32_t& last_scan = chunks_[place / kChunk].last_scan[place % kChunk];
+    if (last_scan == scan) return;
+    last_scan = scan;
+    LabelledVoxelSums& met = entry(place);
+    if (met.scan_count != 0 || met.sums.count == 0) ++met.scan_count;
   }
 
   /// Adds other sums; calls count_scans(entry of the other, entry here before its sums are added, its place) for each.
@@ -62,27 +82,50 @@ class VoxelSumsTable {
   void add(const std::vector<LabelledVoxelSums>& others, const CountScans& count_scans) {
     for (const LabelledVoxelSums& from : others) {
       const std::size_t place = placeOf(from.voxel, from.label);
-      count_scans(from, entries_[place], place);
-      entries_[place].sums += from.sums;
+      LabelledVoxelSums& into = entry(place);
+      count_scans(from, into, place);
+      into.sums += from.sums;
     }
   }
+  template <typename CountScans>
+  void add(const VoxelSumsTable& other, const CountScans& count_scans) {
+    other.forEachBatch([&](const std::vector<LabelledVoxelSums>& entries) { add(entries, count_scans); });
+  }
 
-  /// The entries in the order in which their voxels were first met.
-  const std::vector<LabelledVoxelSums>& entries() const { return entries_; }
-  /// The same, moved out. The table is empty afterwards.
+  /// Calls visit(entries) for all entries, some at a time, in the order of their places.
+  template <typename Visit>
+  void forEachBatch(const Visit& visit) const {
+    for (const Chunk& chunk : chunks_) visit(chunk.entries);
+  }
+
+  /// All entries in that order, moved out chunk by chunk. The table is empty afterwards.
   std::vector<LabelledVoxelSums> takeEntries() {
+    std::vector<LabelledVoxelSums> all;
+    all.reserve(size());
+    for (Chunk& chunk : chunks_) {
+      all.insert(all.end(), chunk.entries.begin(), chunk.entries.end());
+      chunk = {};
+    }
+    clear();
+    return all;
+  }
+  void clear() {
     slots_ = std::vector<Slot>(kMinSlots);
-    last_scan_.clear();
-    return std::exchange(entries_, {});
+    chunks_.clear();
   }
 
  private:
   static constexpr std::size_t kMinSlots = 1024;  // a power of two
+  static constexpr std::size_t kChunk = 4096;     // entries; 400 kB, which become the process's as they are used
   static constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
 
   struct Slot {
     std::uint32_t hash = 0;
     std::uint32_t place = kEmpty;
+  };
+  struct Chunk {
+    std::vector<LabelledVoxelSums> entries;
+    std::vector<std::uint32_t> last_scan;  // that met each
   };
 
   static std::uint32_t hashOf(const VoxelCoordinate& voxel, StructuralLabel label) {
@@ -95,10 +138,17 @@ class VoxelSumsTable {
     std::size_t slot = hash & mask();
     for (; slots_[slot].place != kEmpty; slot = (slot + 1) & mask()) {
       if (slots_[slot].hash != hash) continue;
-      const LabelledVoxelSums& entry = entries_[slots_[slot].place];
-      if (entry.voxel == voxel && entry.label == label) break;
+      const LabelledVoxelSums& met = entry(slots_[slot].place);
+      if (met.voxel == voxel && met.label == label) break;
     }
     return slot;
+  }
+
+  Chunk& newChunk() {
+    Chunk& chunk = chunks_.emplace_back();
+    chunk.entries.reserve(kChunk);
+    chunk.last_scan.reserve(kChunk);
+    return chunk;
   }
 
   void grow() {
@@ -113,8 +163,7 @@ class VoxelSumsTable {
   }
 
   std::vector<Slot> slots_;
-  std::vector<LabelledVoxelSums> entries_;
-  std::vector<std::uint32_t> last_scan_;  // that met each entry
+  std::vector<Chunk> chunks_;
 };
 
 }  // namespace saw_ndt::internal

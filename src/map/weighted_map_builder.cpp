@@ -10,7 +10,12 @@
 
 #include "common/executor.h"
 #include "common/no_return.h"
+#include "map/map_encoding.h"
+#include "map/map_file_writer.h"
 #include "map/merge_rules.h"
+#include "map/spilled_tiles.h"
+#include "map/sums_statistics.h"
+#include "map/tiled_entries.h"
 #include "map/voxel_runs.h"
 #include "map/voxel_sums_table.h"
 #include "saw_ndt/common/error.h"
@@ -61,7 +66,7 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
         const VoxelCoordinate voxel(block->voxel[0][point], block->voxel[1][point], block->voxel[2][point]);
         const std::size_t place = table.placeOf(voxel, static_cast<StructuralLabel>(block->label[point]));
         table.meet(place, scan);
-        VoxelSums& sums = table.sums(place);
+        VoxelSums& sums = table.entry(place).sums;
         sums.count += run_size;
         for (std::size_t j = 0; j < 3; ++j) sums.sum[j] += run.sum_count[j];
         for (std::size_t j = 0; j < 6; ++j) sums.product[j] += run.product[j];
@@ -92,14 +97,17 @@ void WeightedMapBuilder::setMapOrigin(const Eigen::Vector3d& map_origin_m) {
 
 WeightedMapBuilder::~WeightedMapBuilder() = default;
 WeightedMapBuilder::WeightedMapBuilder(const WeightedMapBuilder& other)
-    : origin_(other.origin_), table_(std::make_unique<VoxelSumsTable>(*other.table_)) {}
+    : origin_(other.origin_),
+      table_(std::make_unique<VoxelSumsTable>(*other.table_)),
+      most_entries_(other.most_entries_),
+      spilled_(other.spilled_ ? std::make_unique<SpilledTiles>(*other.spilled_) : nullptr) {}
 WeightedMapBuilder::WeightedMapBuilder(WeightedMapBuilder&& other) noexcept = default;
 WeightedMapBuilder& WeightedMapBuilder::operator=(const WeightedMapBuilder& other) {
   return *this = WeightedMapBuilder(other);
 }
 WeightedMapBuilder& WeightedMapBuilder::operator=(WeightedMapBuilder&& other) noexcept = default;
 
-bool WeightedMapBuilder::isEmpty() const { return origin_.scan_count == 0 && table_->entries().empty(); }
+bool WeightedMapBuilder::isEmpty() const { return origin_.scan_count == 0 && table_->size() == 0 && !hasSpilled(); }
 
 void WeightedMapBuilder::requireKind(bool labelled) const {
   if (!isEmpty() && origin_.labelled != labelled) {
@@ -124,6 +132,8 @@ void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels
   requireAddable(labels, T_map_scan);
   beginAdding(labels.known(), SAW_NDT_VERSION);
   ++origin_.scan_count;
+  // Not while a scan may be continued: a voxel counts it once.
+  spillWhereTooMany();
   addPoints(points, labels, T_map_scan, threads);
 }
 
@@ -156,26 +166,58 @@ void WeightedMapBuilder::addPoints(const ScanView& points, const LabelView& labe
     parts[p].point_count = addRange(points, labels, start(p), start(p + 1), placement, scan, parts[p].table);
   });
   for (const Part& part : parts) {
-    table_->add(part.table.entries(), [&](const LabelledVoxelSums&, const LabelledVoxelSums&, std::size_t place) {
+    table_->add(part.table, [&](const LabelledVoxelSums&, const LabelledVoxelSums&, std::size_t place) {
       table_->meet(place, scan);
     });
     origin_.point_count += part.point_count;
   }
 }
 
-void WeightedMapBuilder::merge(const WeightedMapBuilder& other) { merge(other.origin_, other.table_->entries()); }
+void WeightedMapBuilder::limitMemory(std::size_t most_entries, const std::filesystem::path& folder) {
+  checkOption(most_entries > 0, "most_entries", most_entries, "1 or more");
+  if (spilled_ == nullptr) spilled_ = std::make_unique<SpilledTiles>(folder);
+  most_entries_ = most_entries;
+}
 
-void WeightedMapBuilder::merge(const WeightedVoxelMap& map) { merge(map.origin(), map.entries()); }
+bool WeightedMapBuilder::hasSpilled() const { return spilled_ != nullptr && !spilled_->parts().empty(); }
 
-void WeightedMapBuilder::merge(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) {
-  const bool adds = origin.scan_count != 0 || !entries.empty();
-  requireMergeable(origin_, !isEmpty(), origin, adds);
+void WeightedMapBuilder::spillWhereTooMany() {
+  if (spilled_ == nullptr || table_->size() < most_entries_) return;
+  forEachTileOf(*table_, nullptr, [&](const std::vector<LabelledVoxelSums>& entries) { spilled_->add(entries); });
+  table_->clear();
+}
+
+void WeightedMapBuilder::merge(const WeightedMapBuilder& other) {
+  const bool adds = !other.isEmpty();
+  requireMergeable(origin_, !isEmpty(), other.origin_, adds);
   if (!adds) return;
-  requireRoomFor(origin, entries);
+  if (!other.hasSpilled()) {
+    other.table_->forEachBatch(
+        [&](const std::vector<LabelledVoxelSums>& entries) { requireRoomFor(other.origin_, entries); });
+  }
   const bool holds = !isEmpty();
+  if (other.hasSpilled()) {
+    other.forEachTile([&](const std::vector<LabelledVoxelSums>& entries) { add(entries); });
+  } else {
+    other.table_->forEachBatch([&](const std::vector<LabelledVoxelSums>& entries) { add(entries); });
+  }
+  addOrigin(origin_, holds, other.origin_);
+}
+
+void WeightedMapBuilder::merge(const WeightedVoxelMap& map) {
+  const bool adds = map.origin().scan_count != 0 || !map.entries().empty();
+  requireMergeable(origin_, !isEmpty(), map.origin(), adds);
+  if (!adds) return;
+  requireRoomFor(map.origin(), map.entries());
+  const bool holds = !isEmpty();
+  add(map.entries());
+  addOrigin(origin_, holds, map.origin());
+}
+
+void WeightedMapBuilder::add(const std::vector<LabelledVoxelSums>& entries) {
+  spillWhereTooMany();
   table_->add(entries,
               [](const LabelledVoxelSums& from, LabelledVoxelSums& into, std::size_t) { addScanCount(from, into); });
-  addOrigin(origin_, holds, origin);
 }
 
 void WeightedMapBuilder::requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const {
@@ -186,12 +228,66 @@ void WeightedMapBuilder::requireRoomFor(const MapOrigin& origin, const std::vect
   }
 }
 
-WeightedVoxelMap WeightedMapBuilder::build() const& { return {origin_, table_->entries()}; }
+std::size_t WeightedMapBuilder::entryCount() const { return table_->size(); }
+
+WeightedVoxelMap WeightedMapBuilder::build() const& {
+  std::vector<LabelledVoxelSums> entries;
+  if (hasSpilled()) {
+    forEachTile(
+        [&](const std::vector<LabelledVoxelSums>& tile) { entries.insert(entries.end(), tile.begin(), tile.end()); });
+  } else {
+    entries.reserve(table_->size());
+    table_->forEachBatch([&](const std::vector<LabelledVoxelSums>& batch) {
+      entries.insert(entries.end(), batch.begin(), batch.end());
+    });
+  }
+  return {origin_, std::move(entries)};
+}
 
 WeightedVoxelMap WeightedMapBuilder::build() && {
+  if (hasSpilled()) {
+    WeightedVoxelMap map = static_cast<const WeightedMapBuilder&>(*this).build();
+    table_->clear();
+    spilled_->clear();
+    origin_.scan_count = origin_.point_count = 0;
+    return map;
+  }
   const MapOrigin origin = origin_;
   origin_.scan_count = origin_.point_count = 0;
   return {origin, table_->takeEntries()};
+}
+
+void WeightedMapBuilder::forEachTile(const std::function<void(const std::vector<LabelledVoxelSums>& entries)>& visit,
+                                     int threads) const {
+  forEachTileOf(*table_, spilled_.get(), visit, threads);
+}
+
+WrittenMap WeightedMapBuilder::save(const std::string& path, int threads) const {
+  struct Encoded {
+    MapTileRecord record;
+    std::vector<char> bytes;
+    std::uint64_t voxel_count = 0;
+  };
+  const TiledEntries tiles(*table_, spilled_.get());
+  MapFileWriter writer(path, origin_, tiles.tileCount());
+  WrittenMap written;
+  tiles.forEach<Encoded>(
+      threads,
+      [&](const std::vector<LabelledVoxelSums>& entries, Encoded& encoded) {
+        const LabelledVoxelSums* const end = entries.data() + entries.size();
+        encoded.record = encodeTile(entries.data(), end, encoded.bytes);
+        encoded.voxel_count = voxelCountOf(entries.data(), end, origin_.resolution_m);
+      },
+      [&](const Encoded& encoded) {
+        writer.add(encoded.record, encoded.bytes);
+        written.voxel_count += encoded.voxel_count;
+        written.entry_count += encoded.record.entry_count;
+      });
+  writer.commit(origin_.point_count);
+  written.origin = origin_;
+  written.tile_count = tiles.tileCount();
+  written.file_bytes = writer.size();
+  return written;
 }
 
 }  // namespace saw_ndt

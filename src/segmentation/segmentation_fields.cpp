@@ -61,4 +61,14 @@ bool parseField(std::string_view text, std::vector<double>& values) {
   }
 }
 
+SegmentationOptions mountedAs(SegmentationOptions options, const SegmentationOptions& other) {
+  options.mounting_pitch_deg = other.mounting_pitch_deg;
+  options.mounting_roll_deg = other.mounting_roll_deg;
+  options.min_range_m = other.min_range_m;
+  options.max_range_m = other.max_range_m;
+  options.vehicle_box_m = other.vehicle_box_m;
+  options.ground.sensor_height_m = other.ground.sensor_height_m;
+  return options;
+}
+
 }  // namespace saw_ndt::internal

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/segmentation/segmentation_options.h"
 
 namespace saw_ndt::internal {
@@ -53,5 +54,9 @@ bool parseField(std::string_view text, double& value);
 bool parseField(std::string_view text, bool& value);
 bool parseField(std::string_view text, GroundRule& value);
 bool parseField(std::string_view text, std::vector<double>& values);
+
+/// Options with the mounting, the ranges and the vehicle's box of others: of a map of another vehicle, where its LiDAR
+/// was and what of it was seen does not matter.
+SAW_NDT_EXPORT SegmentationOptions mountedAs(SegmentationOptions options, const SegmentationOptions& other);
 
 }  // namespace saw_ndt::internal

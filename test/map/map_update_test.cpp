@@ -79,7 +79,7 @@ TEST_F(MapUpdateInPlace, GivesTheMapThatMergingGives) {
     const MapUpdate update = updateMapFile(map, {added}, 2);
     EXPECT_TRUE(bytesOf(WeightedVoxelMap::load(map)) == merged);
     expectEqualTargets(NdtTarget::load(map), NdtTarget::load(path("merged.map")));
-    mergeMapFiles({map}, path("compact.map"));
+    EXPECT_EQ(mergeMapFiles({map}, path("compact.map")).dead_bytes_left_out, deadBytesOfMapFile(map));
     EXPECT_TRUE(contentOf(path("compact.map")) == merged);
 
     // What was there stays, and what is new is told to the byte.

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "expect_throws.h"
+#include "map/voxel_sums_table.h"
 #include "map_fixtures.h"
+#include "saw_ndt/common/error.h"
 #include "saw_ndt/pcl/cloud_view.h"
 #include "saw_ndt/version.h"
 #include "temporary_folder.h"
@@ -81,6 +83,113 @@ TEST(WeightedMapBuilder, AnyOrderOfCloudsAndPointsGivesTheSameBytes) {
     for (Scan& scan : scans) std::shuffle(scan.cloud.begin(), scan.cloud.end(), random);
     EXPECT_TRUE(savedBytes(builderOf(scans).build()) == expected);
   }
+}
+
+TEST(WeightedMapBuilder, SavesAndCountsTileByTileWhatItsMapDoes) {
+  WeightedMapBuilder builder(0.3);
+  // Tiles on both sides of the origin, and some that lie too far apart for one number to order all voxels.
+  const std::vector<Scan> scans = drive();
+  for (const Scan& scan : scans) addCloud(builder, scan.cloud, scan.T_map_cloud);
+  for (const double far_m : {-6e8, 6e8}) {
+    Eigen::Isometry3d T_map_cloud = Eigen::Isometry3d::Identity();
+    T_map_cloud.translation().setConstant(far_m);
+    addCloud(builder, scans.front().cloud, T_map_cloud);
+  }
+  const WeightedVoxelMap map = builder.build();
+  const TemporaryFolder folder;
+  for (const int threads : {1, 3}) {
+    const WrittenMap written = builder.save((folder.path() / "a.map").string(), threads);
+    const std::string bytes = contentOf(folder.path() / "a.map");
+    EXPECT_TRUE(bytes == savedBytes(map));
+    EXPECT_EQ(written.entry_count, map.entries().size());
+    EXPECT_EQ(written.voxel_count, map.voxelCount());
+    EXPECT_EQ(written.file_bytes, bytes.size());
+  }
+  EXPECT_EQ(builder.entryCount(), map.entries().size());
+  EXPECT_GT(map.voxelCount(), 1000U);
+  std::size_t next = 0;
+  builder.forEachTile([&](const std::vector<LabelledVoxelSums>& entries) {
+    for (const LabelledVoxelSums& entry : entries) {
+      ASSERT_LT(next, map.entries().size());
+      ASSERT_EQ(entry.voxel, map.entries()[next].voxel);
+      ASSERT_EQ(entry.sums, map.entries()[next++].sums);
+    }
+  });
+  EXPECT_EQ(next, map.entries().size());
+}
+
+TEST(WeightedMapBuilder, LimitedMemoryHoldsSoManySumsAndGivesTheSameBytes) {
+  // The same places again and again, and some points of each scan behind the others.
+  std::vector<Scan> scans = drive();
+  const std::vector<Scan> again = scans;
+  for (int lap = 0; lap < 2; ++lap) scans.insert(scans.end(), again.begin(), again.end());
+  const auto addTo = [&](WeightedMapBuilder& builder, std::size_t first, std::size_t last) {
+    std::size_t most = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      const LabelledCloud& cloud = scans[i].cloud;
+      std::vector<StructuralLabel> labels;
+      for (const auto& point : cloud) labels.push_back(static_cast<StructuralLabel>(point.label));
+      ScanView front = viewOf(cloud), rest = viewOf(cloud);
+      front.size = cloud.size() / 2;
+      rest.xyz = &cloud[front.size].x;
+      rest.size = cloud.size() - front.size;
+      const std::vector<StructuralLabel> rest_labels(labels.end() - static_cast<std::ptrdiff_t>(rest.size),
+                                                     labels.end());
+      builder.addScan(front, LabelView(labels), scans[i].T_map_cloud);
+      builder.continueScan(rest, LabelView(rest_labels), scans[i].T_map_cloud);
+      most = std::max(most, builder.entryCount());
+    }
+    return most;
+  };
+  WeightedMapBuilder free(0.8), limited(0.8), first_part(0.8), second_part(0.8), merged(0.8);
+  const TemporaryFolder folder;
+  constexpr std::size_t kMost = 500;
+  for (WeightedMapBuilder* builder : {&limited, &first_part, &merged}) builder->limitMemory(kMost, folder.path());
+  EXPECT_EQ(folder.entryCount(), 0U) << "the file has a name";
+  const std::size_t of_one_scan = addTo(second_part, 20, 21);
+  second_part = WeightedMapBuilder(0.8);
+  addTo(free, 0, scans.size());
+  ASSERT_GT(free.entryCount(), 2 * (kMost + 2 * of_one_scan));
+  EXPECT_LT(addTo(limited, 0, scans.size()), kMost + 2 * of_one_scan);
+  const std::string expected = savedBytes(free.build());
+  EXPECT_TRUE(savedBytes(limited.build()) == expected);
+  for (const int threads : {1, 3}) {
+    limited.save((folder.path() / "a.map").string(), threads);
+    EXPECT_TRUE(contentOf(folder.path() / "a.map") == expected);
+  }
+  // A copy goes on by itself, and what is merged may be limited on either side.
+  addTo(first_part, 0, 12);
+  WeightedMapBuilder copy = first_part;
+  addTo(copy, 12, scans.size());
+  addTo(second_part, 12, scans.size());
+  merged.merge(first_part);
+  merged.merge(second_part);
+  second_part.merge(first_part);
+  for (const WeightedMapBuilder* builder : {&copy, &merged, &second_part}) {
+    EXPECT_TRUE(savedBytes(builder->build()) == expected);
+  }
+  EXPECT_TRUE(savedBytes(std::move(limited).build()) == expected);
+  EXPECT_TRUE(limited.build().entries().empty());
+  expectThrows<std::invalid_argument>([&] { limited.limitMemory(0, folder.path()); }, {"most_entries = 0"});
+  expectThrows<Error>([&] { free.limitMemory(1, folder.path() / "none"); }, {"none", "No such file"});
+}
+
+TEST(VoxelSumsTable, EntriesStayWhereTheyAre) {
+  internal::VoxelSumsTable table;
+  table.entry(table.placeOf({1, 2, 3}, StructuralLabel::GROUND)).sums.add({1, 1, 1});
+  const LabelledVoxelSums* const first = &table.entry(0);
+  for (int i = 0; i < 100000; ++i) table.placeOf({i, 0, 0}, StructuralLabel::NOISE);
+  EXPECT_EQ(table.size(), 100001U);
+  EXPECT_EQ(&table.entry(0), first);
+  EXPECT_EQ(table.find({1, 2, 3}, StructuralLabel::GROUND), first);
+  // A copy has its own, and goes on by itself.
+  internal::VoxelSumsTable copy = table;
+  EXPECT_NE(&copy.entry(0), first);
+  EXPECT_EQ(copy.placeOf({77, 0, 0}, StructuralLabel::NOISE), 78U);
+  EXPECT_EQ(copy.placeOf({-1, 0, 0}, StructuralLabel::NOISE), 100001U);
+  EXPECT_EQ(table.size(), 100001U);
+  EXPECT_EQ(copy.takeEntries().size(), 100002U);
+  EXPECT_EQ(copy.size(), 0U);
 }
 
 TEST(WeightedMapBuilder, MergedPartsGiveTheSameBytes) {

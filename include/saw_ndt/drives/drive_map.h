@@ -40,4 +40,9 @@ struct DriveMapOptions {
 SAW_NDT_EXPORT WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,
                                                 const std::function<void()>& scan_done = {});
 
+/// The same, to a builder that may have scans already, such as those of other drives. That no scan is left is no error.
+/// @param map  of options.resolution_m; its own segmentation is what the map tells, and may be that of another mounting
+SAW_NDT_EXPORT void addScans(ScanSource& scans, const DriveMapOptions& options, WeightedMapBuilder& map,
+                             const std::function<void()>& scan_done = {});
+
 }  // namespace saw_ndt

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,13 +13,15 @@
 #include "saw_ndt/common/labels.h"
 #include "saw_ndt/common/scan_view.h"
 #include "saw_ndt/map/weighted_voxel_map.h"
+#include "saw_ndt/map/written_map.h"
 #include "saw_ndt/segmentation/segmentation_options.h"
 
 namespace saw_ndt {
 
 namespace internal {
+class SpilledTiles;
 class VoxelSumsTable;
-}
+}  // namespace internal
 
 /// Collects labelled points into voxel sums, scan after scan. Memory grows with the voxels met, never with the
 /// points; the result does not depend on the order of scans or on how they were spread over builders.
@@ -64,10 +69,33 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   /// What has been added so far.
   const MapOrigin& origin() const { return origin_; }
 
+  /// Where so many sums are in memory when a scan or a map comes, they go into a temporary file, tile by tile, and come
+  /// together again when the map is built or saved: memory no longer grows with the map. The file has no name and goes
+  /// with the builder, whatever ends the process.
+  /// @param most_entries  one a voxel and label, some 130 bytes each; 1 or more
+  /// @param folder        where there is room for what the map's file will take, and more where places are seen again
+  /// @throws std::invalid_argument; Error where no file can be made. Adding and reading throws Error, too, from then on
+  void limitMemory(std::size_t most_entries, const std::filesystem::path& folder);
+  /// How many sums are in memory.
+  std::size_t entryCount() const;
+
   /// The map of everything added so far.
   WeightedVoxelMap build() const&;
   /// The same without a copy of the sums; the builder is empty afterwards.
   WeightedVoxelMap build() &&;
+
+  // The same of build()'s map without making it, in hardly more memory than the builder has. Both throw
+  // std::invalid_argument where the sums of a voxel that have been in the temporary file are more than there is room
+  // for.
+
+  /// Calls visit(entries) for each tile that has any, in map order, with its entries in map order.
+  /// @param threads  that read, besides the one that visits; 0: all cores
+  void forEachTile(const std::function<void(const std::vector<LabelledVoxelSums>& entries)>& visit,
+                   int threads = 1) const;
+  /// Writes the map file of everything added so far.
+  /// @param threads  0: all cores; the file does not depend on it
+  /// @throws Error
+  WrittenMap save(const std::string& path, int threads = 0) const;
 
  private:
   bool isEmpty() const;
@@ -75,11 +103,15 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   void requireAddable(const LabelView& labels, const Eigen::Isometry3d& T_map_scan) const;
   void requireRoomFor(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries) const;
   void beginAdding(bool labelled, const std::string& software_version);
-  void merge(const MapOrigin& origin, const std::vector<LabelledVoxelSums>& entries);
+  void add(const std::vector<LabelledVoxelSums>& entries);
+  bool hasSpilled() const;
+  void spillWhereTooMany();
   void addPoints(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan, int threads);
 
   MapOrigin origin_;
   std::unique_ptr<internal::VoxelSumsTable> table_;
+  std::size_t most_entries_ = 0;
+  std::unique_ptr<internal::SpilledTiles> spilled_;  // none where memory is not limited
 };
 
 }  // namespace saw_ndt
