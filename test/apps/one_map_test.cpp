@@ -89,8 +89,8 @@ TEST_F(OneMap, DrivesHavePosesOfTheirOwnAndOneSensor) {
   std::filesystem::remove(folder.path() / "a.map");
   expectFails(SAW_NDT_BUILD_MAP_APP, both + file("a.map") + "-poses " + file("1.txt"), 2,
               {"-poses", "has 1 files, where there are 2 recordings"});
-  expectFails(SAW_NDT_BUILD_MAP_APP, both + file("a.map") + "-shard 1/16 -poses '" + poses + "'", 2,
-              {"shard '1/16'", "none of 15 scans"});
+  expectFails(SAW_NDT_BUILD_MAP_APP, both + file("a.map") + "-shard 16/16 -poses '" + poses + "'", 2,
+              {"shard '16/16'", "none of 15 scans"});
   writeKittiDrive(folder.path() / "fine", driveDownTheStreet(SensorModel::named("HDL-64E"), 2));
   std::filesystem::rename(folder.path() / "1.txt", drive_folder / "poses.txt");
   const AppResult result = runAppProgram(SAW_NDT_BUILD_MAP_APP, quoted(drive_folder) + file("fine") + file("a.map"));
