@@ -68,19 +68,16 @@ ScanView compensated(const RecordedScan& scan, const DriveMapOptions& options, s
   return viewOf(moved);
 }
 
-}  // namespace
-
-void DriveMapOptions::check() const {
-  if (segmentation) segmentation->check();
-  checkOption(scan_period_s > 0.0 && std::isfinite(scan_period_s), "scan_period_s", scan_period_s, "positive");
-}
-
-void addScans(ScanSource& scans, const DriveMapOptions& options, MovedVoxels& moved,
-              const std::function<void()>& scan_done) {
+// Hands the scans of a source to several threads, each of which has a worker of its own:
+// worker(scan as measured, scan as seen at its stamp, T_map_lidar).
+template <typename MakeWorker>
+void forEachScan(ScanSource& scans, const DriveMapOptions& options, const std::function<void()>& scan_done,
+                 const MakeWorker& makeWorker) {
   options.check();
   SharedSource source(scans, options.scan_left_out);
   const int threads = internal::threadCount(options.threads);
   internal::forEachChunkOffline(threads, static_cast<std::size_t>(threads), [&](std::size_t, int) {
+    auto worker = makeWorker();
     std::vector<LidarPoint> points;
     RecordedScan scan;
     while (source.next(scan)) {
@@ -93,11 +90,27 @@ void addScans(ScanSource& scans, const DriveMapOptions& options, MovedVoxels& mo
           return;
         }
       }
-      moved.addScan(view, *scan.T_map_lidar);
+      worker(viewOf(scan), view, *scan.T_map_lidar);
       if (scan_done) scan_done();
     }
   });
   source.rethrow();
+}
+
+}  // namespace
+
+void DriveMapOptions::check() const {
+  if (segmentation) segmentation->check();
+  checkOption(scan_period_s > 0.0 && std::isfinite(scan_period_s), "scan_period_s", scan_period_s, "positive");
+}
+
+void addScans(ScanSource& scans, const DriveMapOptions& options, MovedVoxels& moved,
+              const std::function<void()>& scan_done) {
+  forEachScan(scans, options, scan_done, [&moved] {
+    return [&moved](const ScanView&, const ScanView& scan, const Eigen::Isometry3d& T_map_lidar) {
+      moved.addScan(scan, T_map_lidar);
+    };
+  });
 }
 
 WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& options,
@@ -118,36 +131,18 @@ WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& optio
 
 void addScans(ScanSource& scans, const DriveMapOptions& options, WeightedMapBuilder& map,
               const std::function<void()>& scan_done) {
-  options.check();
-  SharedSource source(scans, options.scan_left_out);
-  // Threads read and segment scans. What takes memory, the sums, there is once, and a scan is added to it in a fraction
-  // of the time that it takes to segment.
+  // What takes memory, the sums, there is once, and a scan is added to it in a fraction of the time that it takes to
+  // segment.
   std::mutex map_mutex;
-  const int threads = internal::threadCount(options.threads);
-  internal::forEachChunkOffline(threads, static_cast<std::size_t>(threads), [&](std::size_t, int) {
-    ScanSegmenter segmenter(options.segmentation.value_or(SegmentationOptions()));
-    std::vector<StructuralLabel> labels;
-    std::vector<LidarPoint> moved;
-    RecordedScan scan;
-    while (source.next(scan)) {
-      ScanView view = viewOf(scan);
-      if (options.segmentation) segmenter.segment(view, labels);
-      if (options.motion_compensation != MotionCompensation::OFF) {
-        try {
-          view = compensated(scan, options, moved);
-        } catch (const Error& error) {
-          source.fail(error);
-          return;
-        }
-      }
-      {
-        const std::lock_guard<std::mutex> lock(map_mutex);
-        map.addScan(view, options.segmentation ? LabelView(labels) : LabelView(), *scan.T_map_lidar);
-      }
-      if (scan_done) scan_done();
-    }
+  forEachScan(scans, options, scan_done, [&] {
+    return [&, segmenter = ScanSegmenter(options.segmentation.value_or(SegmentationOptions())),
+            labels = std::vector<StructuralLabel>()](const ScanView& measured, const ScanView& scan,
+                                                     const Eigen::Isometry3d& T_map_lidar) mutable {
+      if (options.segmentation) segmenter.segment(measured, labels);
+      const std::lock_guard<std::mutex> lock(map_mutex);
+      map.addScan(scan, options.segmentation ? LabelView(labels) : LabelView(), T_map_lidar);
+    };
   });
-  source.rethrow();
 }
 
 }  // namespace saw_ndt
