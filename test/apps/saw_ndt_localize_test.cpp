@@ -241,8 +241,8 @@ TEST_F(LocalizeApp, BadMapsAreNamed) {
     expectLocalizeFails(1, parts);
   };
   std::string other = good;
-  other[8] = 4;
-  refused(other, {"a.map: offset 8: map version 4"});
+  other[8] = 9;
+  refused(other, {"a.map: offset 8: map version 9"});
   other = good;
   other[good.size() / 2] = static_cast<char>(other[good.size() / 2] ^ 1);
   refused(other, {"a.map: offset ", "damaged"});
