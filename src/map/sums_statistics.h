@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "map/level_plan.h"
+#include "saw_ndt/common/export.h"
 #include "saw_ndt/map/voxel_statistics.h"
 
 namespace saw_ndt::internal {
@@ -19,7 +20,8 @@ void forEachStatistics(const LabelledVoxelSums* first, const LabelledVoxelSums* 
                        const std::function<void(const std::vector<VoxelStatistics>&)>& visit);
 
 /// How many voxels of entries have a distribution, by the default weighting.
-std::uint64_t voxelCountOf(const LabelledVoxelSums* first, const LabelledVoxelSums* last, double resolution_m);
+SAW_NDT_EXPORT std::uint64_t voxelCountOf(const LabelledVoxelSums* first, const LabelledVoxelSums* last,
+                                          double resolution_m);
 
 /// How many points entries have.
 std::uint64_t pointCountOf(const LabelledVoxelSums* first, const LabelledVoxelSums* last);
