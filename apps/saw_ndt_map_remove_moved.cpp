@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <iostream>
-#include <numeric>
 
 #include "app_options.h"
 #include "common/atomic_output.h"

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "common/write_at.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt::internal {
@@ -35,15 +36,7 @@ GrowingFile::~GrowingFile() { close(descriptor_); }
 void GrowingFile::fail() const { throw Error(path_, "", std::strerror(errno)); }
 
 void GrowingFile::write(std::uint64_t offset, const void* bytes, std::uint64_t count) {
-  const char* next = static_cast<const char*>(bytes);
-  while (count > 0) {
-    const ssize_t written = pwrite(descriptor_, next, count, static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail();
-    next += written;
-    offset += static_cast<std::uint64_t>(written);
-    count -= static_cast<std::uint64_t>(written);
-  }
+  if (!writeAt(descriptor_, offset, bytes, count)) fail();
 }
 
 void GrowingFile::resize(std::uint64_t size) {

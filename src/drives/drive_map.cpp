@@ -117,14 +117,7 @@ WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& optio
                                  const std::function<void()>& scan_done) {
   WeightedMapBuilder map(options.resolution_m, options.segmentation);
   std::string last_failure;
-  DriveMapOptions noting = options;
-  if (options.scan_left_out) {
-    noting.scan_left_out = [&](const std::string& failure) {
-      last_failure = failure;
-      options.scan_left_out(failure);
-    };
-  }
-  addScans(scans, noting, map, scan_done);
+  addScans(scans, internal::notingFailures(options, last_failure), map, scan_done);
   internal::requireAnyScan(map.origin(), last_failure);
   return map;
 }

@@ -14,6 +14,17 @@ DriveMapOptions optionsFor(const DrivePlan& plan, const Recording& recording, Dr
   return common;
 }
 
+DriveMapOptions notingFailures(const DriveMapOptions& options, std::string& last_failure) {
+  DriveMapOptions noting = options;
+  if (options.scan_left_out) {
+    noting.scan_left_out = [&](const std::string& failure) {
+      last_failure = failure;
+      options.scan_left_out(failure);
+    };
+  }
+  return noting;
+}
+
 void requireAnyScan(const MapOrigin& origin, const std::string& last_failure) {
   if (origin.scan_count == 0 && !last_failure.empty()) {
     throw Error(last_failure + ", and no other scan is any better");
@@ -26,13 +37,7 @@ WeightedMapBuilder buildMapOfDrives(const std::vector<DrivePlan>& plans, const D
   WeightedMapBuilder map(common.resolution_m, plans.front().segmentation);
   if (!spill_folder.empty()) map.limitMemory(kMostEntriesInMemory, spill_folder);
   std::string last_failure;
-  DriveMapOptions noting = common;
-  if (common.scan_left_out) {
-    noting.scan_left_out = [&](const std::string& failure) {
-      last_failure = failure;
-      common.scan_left_out(failure);
-    };
-  }
+  const DriveMapOptions noting = notingFailures(common, last_failure);
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const Recording& recording = open(static_cast<int>(i));
     addScans(*recording.scans(plans[i].scans), optionsFor(plans[i], recording, noting), map, scan_done);

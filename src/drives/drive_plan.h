@@ -30,6 +30,9 @@ using DriveOpener = std::function<const Recording&(int drive)>;
 /// of the recording where it is to be taken out. @throws Error as Recording::stamps() and trajectory()
 SAW_NDT_EXPORT DriveMapOptions optionsFor(const DrivePlan& plan, const Recording& recording, DriveMapOptions common);
 
+/// The same options, by which the reason of the scan that was left out last is kept, too. Both must outlive them.
+DriveMapOptions notingFailures(const DriveMapOptions& options, std::string& last_failure);
+
 /// Throws an Error that tells the reason of a scan that was left out, where no other scan has been added.
 SAW_NDT_EXPORT void requireAnyScan(const MapOrigin& origin, const std::string& last_failure);
 

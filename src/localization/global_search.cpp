@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <tuple>
 
 #include "common/executor.h"
@@ -260,8 +259,7 @@ void searchMap(const LocalizationMapFile& file, const std::optional<SearchRegion
       const LocalizationTilePlace& place = places[begin + i];
       tiles[i].at = {place.at.x, place.at.y};
       if (!decodePlaceTile(file.searchTable(place), tiles[i])) {
-        throw Error(file.path(), "offset " + std::to_string(place.offset + place.cell_bytes),
-                    "damaged: a search table cannot be decompressed");
+        failAt(file.path(), place.offset + place.cell_bytes, "damaged: a search table cannot be decompressed");
       }
     });
     search.search(PlaceIndex(std::move(tiles)), first_row, last_row);

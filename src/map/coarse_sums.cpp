@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <array>
 
+#include "common/floor_division.h"
 #include "map/map_order.h"
 
 namespace saw_ndt::internal {
 namespace {
-
-int floorDivide(int value, int divisor) {
-  const int quotient = value / divisor;
-  return value % divisor < 0 ? quotient - 1 : quotient;
-}
 
 // What is known for sure of a coarse voxel: one of its fine ones was met by so many scans.
 void countScans(const LabelledVoxelSums& from, LabelledVoxelSums& into) {
@@ -29,7 +25,7 @@ void CoarseSums::add(const LabelledVoxelSums* first, const LabelledVoxelSums* la
     VoxelCoordinate voxel;
     std::array<std::int64_t, 3> shift;  // from the fine voxel's centre to the coarse one's
     for (int axis = 0; axis < 3; ++axis) {
-      voxel[axis] = floorDivide(first->voxel[axis], factor_);
+      voxel[axis] = floorDivided(first->voxel[axis], factor_);
       const std::int64_t place =
           static_cast<std::int64_t>(first->voxel[axis]) - static_cast<std::int64_t>(voxel[axis]) * factor_;
       shift[static_cast<std::size_t>(axis)] = (2 * place + 1 - factor_) * (kStepsPerVoxel / 2);

@@ -37,10 +37,6 @@ std::vector<double> resolutionsOf(const TargetPlan& plan) {
 
 LocalizationMapFile::LocalizationMapFile(const std::string& path) : path_(path), file_(path) { readHeader(); }
 
-void LocalizationMapFile::fail(std::uint64_t offset, const std::string& reason) const {
-  throw Error(path_, "offset " + std::to_string(offset), reason);
-}
-
 void LocalizationMapFile::readHeader() {
   if (file_.size() < kMagicBytes || std::memcmp(file_.data(), kLocalizationMapMagic, kMagicBytes) != 0) {
     fail(0, "not a saw_ndt localization map");
@@ -175,9 +171,7 @@ std::vector<LocalizationTilePlace> LocalizationMapFile::tilesAround(const Eigen:
 void LocalizationMapFile::decode(const LocalizationTilePlace& tile, const LocalizationClip& clip,
                                  std::vector<NdtCells>& cells) const {
   const std::string_view bytes = this->cells(tile);
-  if (!appendDecodedTile(bytes.data(), bytes.size(), tile.at, resolutions_m_, weighting_, clip, cells)) {
-    fail(tile.offset, "damaged: a tile has voxels that cannot be");
-  }
+  requireCells(appendDecodedTile(bytes.data(), bytes.size(), tile.at, resolutions_m_, weighting_, clip, cells), tile);
   file_.forget(tile.offset, tile.cell_bytes);
 }
 
@@ -199,6 +193,18 @@ NdtTarget LocalizationMapFile::targetOf(const std::vector<LocalizationTilePlace>
     levels[level] = NdtLevel(resolutions_m_[level], std::move(cells));
   });
   return NdtTarget::ofLevels(origin_, weighting_, std::move(levels));
+}
+
+void LocalizationMapFile::requireCells(bool are_valid, const LocalizationTilePlace& tile) const {
+  if (!are_valid) fail(tile.offset, "damaged: a tile has voxels that cannot be");
+}
+
+void LocalizationMapFile::forEachCellOf(
+    const LocalizationTilePlace& tile,
+    const std::function<void(std::size_t level, const QuantizedCell& cell)>& visit) const {
+  const std::string_view bytes = cells(tile);
+  requireCells(forEachCell(bytes.data(), bytes.size(), tile.at, resolutions_m_, visit), tile);
+  file_.forget(tile.offset, tile.cell_bytes);
 }
 
 std::string_view LocalizationMapFile::cells(const LocalizationTilePlace& tile) const {

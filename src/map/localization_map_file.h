@@ -2,12 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/mapped_file.h"
 #include "map/localization_tile.h"
+#include "map/map_front.h"
 #include "saw_ndt/map/ndt_target.h"
 
 namespace saw_ndt::internal {
@@ -53,11 +55,15 @@ class SAW_NDT_EXPORT LocalizationMapFile {
                      const LocalizationClip& clip = {}) const;
   /// The voxels of a tile as they stand in the file.
   std::string_view cells(const LocalizationTilePlace& tile) const;
+  /// Calls visit(level, cell) for each voxel of a tile, as forEachCell().
+  void forEachCellOf(const LocalizationTilePlace& tile,
+                     const std::function<void(std::size_t level, const QuantizedCell& cell)>& visit) const;
   /// The search table of a tile as it stands in the file; empty where there is none.
   std::string_view searchTable(const LocalizationTilePlace& tile) const;
 
  private:
-  [[noreturn]] void fail(std::uint64_t offset, const std::string& reason) const;
+  [[noreturn]] void fail(std::uint64_t offset, const std::string& reason) const { failAt(path_, offset, reason); }
+  void requireCells(bool are_valid, const LocalizationTilePlace& tile) const;
   void readHeader();
   void readMetadata(std::uint32_t size, std::uint32_t checksum);
   void decode(const LocalizationTilePlace& tile, const LocalizationClip& clip, std::vector<NdtCells>& cells) const;

@@ -72,8 +72,8 @@ bool appendDecodedTile(const char* bytes, std::size_t size, const TileCoordinate
                        const LocalizationClip& clip, std::vector<NdtCells>& cells);
 
 /// Calls visit(level, cell) for each cell of such a tile, level after level. @return false as above
-SAW_NDT_EXPORT bool forEachCell(const char* bytes, std::size_t size, const TileCoordinate& at,
-                                const std::vector<double>& resolutions_m,
-                                const std::function<void(std::size_t level, const QuantizedCell& cell)>& visit);
+bool forEachCell(const char* bytes, std::size_t size, const TileCoordinate& at,
+                 const std::vector<double>& resolutions_m,
+                 const std::function<void(std::size_t level, const QuantizedCell& cell)>& visit);
 
 }  // namespace saw_ndt::internal

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "common/floor_division.h"
+
 namespace saw_ndt::internal {
 namespace {
 
@@ -16,8 +18,6 @@ constexpr int kAreasAround = 2;  // 8 m at least
 int voxelsIn(double length_m, double resolution_m) {
   return std::max(1, static_cast<int>(std::min(1e6, std::round(length_m / resolution_m))));
 }
-
-int floorDivided(int value, int divisor) { return value / divisor - static_cast<int>(value % divisor < 0); }
 
 }  // namespace
 

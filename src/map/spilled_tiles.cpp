@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string>
 
+#include "common/write_at.h"
 #include "map/map_encoding.h"
 #include "map/map_file_layout.h"
 #include "saw_ndt/common/error.h"
@@ -31,13 +32,7 @@ class SpilledTiles::File {
   // Returns where the bytes stand.
   std::uint64_t append(const std::vector<char>& bytes) {
     const std::uint64_t offset = end_.fetch_add(bytes.size());
-    for (std::size_t done = 0; done < bytes.size();) {
-      const ssize_t count =
-          pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) fail();
-      done += static_cast<std::size_t>(count);
-    }
+    if (!writeAt(descriptor_, offset, bytes.data(), bytes.size())) fail();
     return offset;
   }
   void read(std::uint64_t offset, std::vector<char>& bytes) const {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/atomic_output.h"
+#include "common/write_at.h"
 #include "map/map_encoding.h"
 #include "map/map_tile.h"
 #include "map/sums_statistics.h"
@@ -38,13 +39,7 @@ class SharedFile {
   SharedFile& operator=(const SharedFile&) = delete;
 
   void write(const std::vector<char>& bytes, std::uint64_t offset) {
-    for (std::size_t written = 0; written < bytes.size();) {
-      const ssize_t count =
-          pwrite(descriptor_, bytes.data() + written, bytes.size() - written, static_cast<off_t>(offset + written));
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) fail();
-      written += static_cast<std::size_t>(count);
-    }
+    if (!writeAt(descriptor_, offset, bytes.data(), bytes.size())) fail();
   }
   // What was written is in the file system, where others find it, or this throws.
   void finish() {

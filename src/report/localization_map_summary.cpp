@@ -6,7 +6,6 @@
 #include "map/localization_map_file.h"
 #include "report/figure_lines.h"
 #include "report/map_figures.h"
-#include "saw_ndt/common/error.h"
 #include "saw_ndt/localization/localization_method.h"
 
 namespace saw_ndt {
@@ -74,19 +73,14 @@ LocalizationMapSummary summarize(const LocalizationMap& map) {
     const LocalizationTilePlace place = file.tile(i);
     tile_bytes.push_back(std::size_t{place.cell_bytes} + place.table_bytes);
     summary.search_bytes += place.table_bytes;
-    const std::string_view cells = file.cells(place);
-    const bool is_valid = forEachCell(cells.data(), cells.size(), place.at, file.resolutions(),
-                                      [&](std::size_t level, const QuantizedCell& cell) {
-                                        if (level == level_count) {
-                                          ++summary.coarse_voxels;
-                                          return;
-                                        }
-                                        ++summary.level_voxels[level];
-                                        ++summary.class_voxels[static_cast<std::size_t>(cell.structure_class) - 1U];
-                                      });
-    if (!is_valid) {
-      throw Error(map.path(), "offset " + std::to_string(place.offset), "damaged: a tile has voxels that cannot be");
-    }
+    file.forEachCellOf(place, [&](std::size_t level, const QuantizedCell& cell) {
+      if (level == level_count) {
+        ++summary.coarse_voxels;
+        return;
+      }
+      ++summary.level_voxels[level];
+      ++summary.class_voxels[static_cast<std::size_t>(cell.structure_class) - 1U];
+    });
   }
   if (tile_bytes.empty()) return summary;
   const auto [least, greatest] = std::minmax_element(tile_bytes.begin(), tile_bytes.end());

@@ -5,14 +5,13 @@
 #include <limits>
 #include <sstream>
 
+#include "common/floor_division.h"
 #include "report/gnuplot.h"
 
 namespace saw_ndt {
 namespace {
 
 constexpr double kMargin = 0.03;  // of the window, of the greater of its lengths
-
-int floorDivided(int value, int divisor) { return value / divisor - static_cast<int>(value % divisor < 0); }
 
 }  // namespace
 
@@ -29,8 +28,8 @@ MapRaster::MapRaster(const MapAxes& axes, double resolution_m) {
 }
 
 void MapRaster::set(const VoxelCoordinate& voxel, double height, double value) {
-  const int x = floorDivided(voxel.x(), voxels_per_cell_) - first_x_;
-  const int y = floorDivided(voxel.y(), voxels_per_cell_) - first_y_;
+  const int x = internal::floorDivided(voxel.x(), voxels_per_cell_) - first_x_;
+  const int y = internal::floorDivided(voxel.y(), voxels_per_cell_) - first_y_;
   if (x < 0 || y < 0 || static_cast<std::size_t>(x) >= columns_ || static_cast<std::size_t>(y) >= rows_) return;
   Cell& cell = cells_[static_cast<std::size_t>(y) * columns_ + static_cast<std::size_t>(x)];
   if (height >= cell.height) cell = {height, value};

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "expect_throws.h"
-#include "map/voxel_sums_table.h"
 #include "map_fixtures.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/pcl/cloud_view.h"
@@ -172,24 +171,6 @@ TEST(WeightedMapBuilder, LimitedMemoryHoldsSoManySumsAndGivesTheSameBytes) {
   EXPECT_TRUE(limited.build().entries().empty());
   expectThrows<std::invalid_argument>([&] { limited.limitMemory(0, folder.path()); }, {"most_entries = 0"});
   expectThrows<Error>([&] { free.limitMemory(1, folder.path() / "none"); }, {"none", "No such file"});
-}
-
-TEST(VoxelSumsTable, EntriesStayWhereTheyAre) {
-  internal::VoxelSumsTable table;
-  table.entry(table.placeOf({1, 2, 3}, StructuralLabel::GROUND)).sums.add({1, 1, 1});
-  const LabelledVoxelSums* const first = &table.entry(0);
-  for (int i = 0; i < 100000; ++i) table.placeOf({i, 0, 0}, StructuralLabel::NOISE);
-  EXPECT_EQ(table.size(), 100001U);
-  EXPECT_EQ(&table.entry(0), first);
-  EXPECT_EQ(table.find({1, 2, 3}, StructuralLabel::GROUND), first);
-  // A copy has its own, and goes on by itself.
-  internal::VoxelSumsTable copy = table;
-  EXPECT_NE(&copy.entry(0), first);
-  EXPECT_EQ(copy.placeOf({77, 0, 0}, StructuralLabel::NOISE), 78U);
-  EXPECT_EQ(copy.placeOf({-1, 0, 0}, StructuralLabel::NOISE), 100001U);
-  EXPECT_EQ(table.size(), 100001U);
-  EXPECT_EQ(copy.takeEntries().size(), 100002U);
-  EXPECT_EQ(copy.size(), 0U);
 }
 
 TEST(WeightedMapBuilder, MergedPartsGiveTheSameBytes) {
@@ -370,41 +351,6 @@ TEST(WeightedMapBuilder, ProjectedCoordinatesKeepTheirMillimetres) {
   }
 }
 
-TEST(WeightedVoxelMap, UniformConfidencesEqualAnUnlabelledMapBitForBit) {
-  VoxelWeighting uniform;
-  uniform.confidence = ConfidenceOptions::uniform();
-  const LabelledCloud cloud = mixedCloud(6, 8000);
-  const WeightedVoxelMap labelled = mapOf(cloud, 1.0);
-  const WeightedVoxelMap unlabelled = mapOf(withoutLabels(cloud));
-  expectEqualTargets(NdtTarget(labelled, uniform), NdtTarget(unlabelled));
-  EXPECT_GT(labelled.entries().size(), unlabelled.entries().size());
-}
-
-TEST(WeightedVoxelMap, FindsTheStatisticsOfEachVoxelAndOfNoOther) {
-  const WeightedVoxelMap map = builderOf(drive()).build();
-  VoxelWeighting weighting;
-  weighting.confidence = ConfidenceOptions::paper();
-  const std::vector<VoxelStatistics> voxels = map.statistics(weighting, 2);
-  ASSERT_GT(voxels.size(), 100U);
-  EXPECT_EQ(map.voxelCount(weighting, 2), voxels.size());
-  EXPECT_GT(map.voxelCount(), voxels.size());
-  for (const VoxelStatistics& expected : voxels) {
-    const auto found = map.find(expected.mean(map.resolution()), weighting);
-    ASSERT_TRUE(found);
-    ASSERT_EQ(found->voxel, expected.voxel);
-    ASSERT_EQ(found->point_count, expected.point_count);
-    ASSERT_EQ(found->mean_from_centre, expected.mean_from_centre);
-    ASSERT_EQ(found->covariance, expected.covariance);
-    ASSERT_EQ(found->weight, expected.weight);
-  }
-  EXPECT_FALSE(map.find({900.0, 0.0, 0.0}));
-  EXPECT_FALSE(map.find({-900.0, 0.0, 0.0}));
-  EXPECT_FALSE(map.find({std::nan(""), 0.0, 0.0}));
-  EXPECT_FALSE(map.find({1e300, 0.0, 0.0}));
-  EXPECT_FALSE(WeightedVoxelMap().find({0.0, 0.0, 0.0}));
-  EXPECT_TRUE(WeightedVoxelMap().statistics().empty());
-}
-
 TEST(WeightedMapBuilder, TellsHowItsLabelsWereMade) {
   SegmentationOptions segmentation;
   segmentation.ground.slope_deg = 9.0;
@@ -440,13 +386,6 @@ TEST(WeightedMapBuilder, CopiesAreApartAndABuilderThatWasBuiltFromStartsAnew) {
   EXPECT_TRUE(savedBytes(copy.build()) == expected);
   builder.merge(copy);
   EXPECT_TRUE(savedBytes(builder.build()) == expected);
-}
-
-TEST(WeightedVoxelMap, RefusesAVoxelAndLabelGivenTwice) {
-  const WeightedVoxelMap map = mapOf(mixedCloud(6, 100));
-  std::vector<LabelledVoxelSums> entries = map.entries();
-  entries.push_back(entries.front());
-  expectThrows<std::invalid_argument>([&] { WeightedVoxelMap(map.origin(), entries); }, {"twice"});
 }
 
 }  // namespace
