@@ -62,6 +62,7 @@ struct PcdCloud {
  private:
   template <typename Number, typename Take>
   void forEachOf(const PcdColumn& column, Take& take) const {
+    if (points == 0) return;  // and no bytes perhaps
     const unsigned char* at = bytes.data() + column.offset;
     for (std::size_t point = 0; point < points; ++point, at += column.stride_bytes) {
       Number number;

@@ -1,0 +1,28 @@
+#include "saw_ndt/common/error.h"
+
+#include <algorithm>
+
+#include "common/printable.h"
+
+namespace saw_ndt {
+namespace {
+
+// What is quoted from a file may be of any length; the name of the file is never cut.
+std::string shortened(const std::string& reason) {
+  constexpr std::size_t kLongestReason = 500;
+  return reason.size() <= kLongestReason ? reason : reason.substr(0, kLongestReason) + "...";
+}
+
+std::string onOneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return internal::printable(text);
+}
+
+}  // namespace
+
+Error::Error(const std::string& file, const std::string& place, const std::string& reason)
+    : std::runtime_error(onOneLine(file + ": " + (place.empty() ? "" : place + ": ") + shortened(reason))) {}
+
+Error::Error(const std::string& what) : std::runtime_error(onOneLine(what)) {}
+
+}  // namespace saw_ndt
