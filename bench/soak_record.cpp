@@ -1,5 +1,6 @@
 #include "soak_record.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -42,6 +43,8 @@ void SoakRecord::add(double total_ms, double cpu_ms) {
 
 SoakInterval SoakRecord::endInterval(SoakInterval counts) {
   counts.resident_mb = internal::median(resident_mb_);
+  malloc_trim(0);
+  counts.held_mb = residentMemory_mb();
   counts.median_ms = internal::median(total_ms_);
   counts.p99_ms = internal::percentile(total_ms_, 99.0);
   counts.median_cpu_ms = internal::median(cpu_ms_);

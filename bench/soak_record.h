@@ -14,6 +14,7 @@ struct SoakInterval {
   double end_h = 0.0;  ///< since it began
   double seconds = 0.0;
   double resident_mb = 0.0;  ///< median
+  double held_mb = 0.0;      ///< resident in the end, once all memory that is free has been given back to the system
   std::size_t descriptors = 0, threads = 0;
   std::size_t scans = 0, accepted = 0, rejected = 0, lost = 0;
   std::size_t wrong = 0;   ///< of those accepted, more than a metre off
