@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "app_options.h"
+#include "common/large_blocks.h"
 #include "endless_drive.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/drives/recording.h"
@@ -196,6 +197,7 @@ int main(int argc, char** argv) {
                 "that a search of the whole map may hold up a scan");
   app.addChoice("method", &arguments.method, saw_ndt::LocalizationMethod::names(), "that MAP was packed for");
   return saw_ndt::runApp(argc, argv, app, [&] {
+    saw_ndt::internal::returnLargeBlocks();  // as saw_ndt_localize does
     if (!(arguments.minutes > 0.0)) throw saw_ndt::UsageError("option -minutes: must be more than 0");
     if (!(arguments.interval_s > 0.0)) throw saw_ndt::UsageError("option -interval-s: must be more than 0");
     if (arguments.fault_scans < 0) throw saw_ndt::UsageError("option -fault-scans: must be 0 or more");
