@@ -7,6 +7,7 @@
 #include <boost/program_options/parsers.hpp>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <set>
@@ -16,6 +17,7 @@
 
 #include "common/input_file.h"
 #include "common/instruction_set.h"
+#include "common/program_signals.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -346,6 +348,7 @@ int runApp(int argc, const char* const* argv, AppOptions& app, const std::functi
     std::cerr << app.name() << ": " << onOneLine(message) << std::endl;
     return code;
   };
+  handleProgramSignals();
   try {
     if (app.parse(argc, argv)) {
       instructionSet();  // throws where the environment asks for one that there is not
@@ -359,6 +362,8 @@ int runApp(int argc, const char* const* argv, AppOptions& app, const std::functi
     return fail(std::string(error.what()) + " (-h prints the usage)", 2);
   } catch (const std::bad_alloc&) {
     return fail("out of memory", 1);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(error.path1().string() + ": " + error.code().message(), 1);
   } catch (const std::exception& error) {
     return fail(error.what(), 1);
   }

@@ -1,12 +1,12 @@
 #include "live_scans.h"
 
 #include <pthread.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "common/unfinished_output.h"
 #include "drives/followed_folder.h"
 #include "drives/live_address.h"
 #include "drives/velodyne_socket.h"
@@ -30,13 +30,12 @@ Interruption::~Interruption() {
 
 void Interruption::onFirst(std::function<void()> call) {
   thread_ = std::thread([this, call = std::move(call)] {
-    constexpr int kEndedBySignal = 128;
     int signal = 0;
     sigwait(&signals_, &signal);
     if (ended_) return;
     call();
     sigwait(&signals_, &signal);
-    if (!ended_) _exit(kEndedBySignal + signal);
+    if (!ended_) internal::endBySignal(signal);
   });
 }
 

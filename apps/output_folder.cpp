@@ -26,25 +26,22 @@ std::filesystem::path firstMissing(const std::filesystem::path& path) {
 }  // namespace
 
 OutputFolder::OutputFolder(const std::string& path) : path_(path) {
-  const std::filesystem::path missing = firstMissing(path_);
-  std::error_code error;
-  std::filesystem::create_directories(path_, error);
-  if (error) {
-    const std::string reason = error.message();
-    if (!missing.empty()) std::filesystem::remove_all(missing, error);
-    throw Error(path, "", "the output folder cannot be made: " + reason);
-  }
-  if (!std::filesystem::is_directory(path_)) throw Error(path, "", "is not a folder");
-  topmost_made_ = missing;
+  made_.emplace([&] {
+    const std::filesystem::path missing = firstMissing(path_);
+    std::error_code error;
+    std::filesystem::create_directories(path_, error);
+    if (error) {
+      const std::string reason = error.message();
+      if (!missing.empty()) std::filesystem::remove_all(missing, error);
+      throw Error(path, "", "the output folder cannot be made: " + reason);
+    }
+    return missing;
+  });
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path_, ignored)) throw Error(path, "", "is not a folder");
   if (::access(path.c_str(), W_OK | X_OK) != 0) {
     throw Error(path, "", std::string("the output folder cannot be written: ") + std::strerror(errno));
   }
-}
-
-OutputFolder::~OutputFolder() {
-  if (topmost_made_.empty() || kept_) return;
-  std::error_code ignored;
-  std::filesystem::remove_all(topmost_made_, ignored);
 }
 
 }  // namespace saw_ndt

@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
                        [&] { progress.step(); }});
     const std::vector<saw_ndt::BenchmarkTable> tables = saw_ndt::benchmarkTables(runs);
     const saw_ndt::BenchmarkText text = saw_ndt::benchmarkText(tables, record, with_paper);
-    const saw_ndt::internal::StagedOutput staged(folder.path());
+    saw_ndt::internal::StagedOutput staged(folder.path());
     saw_ndt::writeBenchmark(staged.folder(), runs, tables, text);
     const std::string note = saw_ndt::writeBenchmarkReport(staged.folder(), runs, text);
     staged.commit();

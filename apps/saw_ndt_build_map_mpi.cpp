@@ -6,6 +6,7 @@
 #include "app_options.h"
 #include "build_map_arguments.h"
 #include "common/executor.h"
+#include "common/program_signals.h"
 #include "mpi/map_of_ranks.h"
 #include "mpi/rank_map_file.h"
 #include "mpi/rank_program.h"
@@ -96,6 +97,7 @@ class RankProgram {
 
 int main(int argc, char** argv) {
   const mpi::environment environment(argc, argv, mpi::threading::funneled, false);
+  saw_ndt::internal::handleProgramSignals();
   const mpi::communicator ranks;
   return RankProgram(argc, argv, ranks).run();
 }

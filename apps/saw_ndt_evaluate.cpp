@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app_options.h"
+#include "io/staged_output.h"
 #include "io/stamp_check.h"
 #include "output_folder.h"
 #include "report/evaluation_pictures.h"
@@ -185,9 +186,11 @@ void checkUsage(const saw_ndt::AppOptions& app, const saw_ndt::PairingOptions& p
 
 void drawPictures(const saw_ndt::TrajectoryEvaluation& evaluation, const std::string& folder_name) {
   saw_ndt::OutputFolder folder(folder_name);
+  saw_ndt::internal::StagedOutput staged(folder.path());
   for (const saw_ndt::GnuplotPicture& picture : saw_ndt::evaluationPictures(evaluation)) {
-    saw_ndt::drawPicture(picture, folder.path());
+    saw_ndt::drawPicture(picture, staged.folder());
   }
+  staged.commit();
   folder.keep();
 }
 

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "app_options.h"
+#include "io/staged_output.h"
 #include "output_folder.h"
 #include "progress_bar.h"
 #include "report/sensor_model_file.h"
@@ -123,9 +124,11 @@ int main(int argc, char** argv) {
     const saw_ndt::VehicleMotion motion = drive.motion->withMounting(lidar.R_vehicle_lidar());
     std::vector<Eigen::Isometry3d> reference;
     if (reference_noise_m > 0.0) reference = saw_ndt::withReferenceNoise(motion, noise);
+    saw_ndt::internal::StagedOutput staged(folder.path());
     saw_ndt::ProgressBar progress(static_cast<std::size_t>(motion.scanCount()));
     const saw_ndt::SequenceContent content =
-        saw_ndt::writeSequence(folder.path(), simulator, motion, reference, [&] { progress.step(); });
+        saw_ndt::writeSequence(staged.folder(), simulator, motion, reference, [&] { progress.step(); });
+    staged.commit();
     folder.keep();
     std::cout << out_dir << ": " << content.scan_count << " scans of " << description.name << ", drive "
               << drive_options.drive << ", " << content.point_count << " points\n";

@@ -9,7 +9,9 @@
 namespace saw_ndt::internal {
 
 /// A file that appears under its name only when it is whole: it is written beside the target and renamed by commit().
-/// Without commit() the target stays as it was and nothing is left behind.
+/// Without commit() the target stays as it was and nothing is left behind; what a process that was killed left behind
+/// goes when the target is next written. A target that is replaced leaves its mode and, where the system allows that,
+/// its owner to the new file.
 class SAW_NDT_EXPORT AtomicOutput {
  public:
   /// Opens the temporary file. Throws Error, naming the target and the system's reason, where the folder is missing or
@@ -19,23 +21,22 @@ class SAW_NDT_EXPORT AtomicOutput {
   AtomicOutput(const AtomicOutput&) = delete;
   AtomicOutput& operator=(const AtomicOutput&) = delete;
 
-  /// Binary, seekable, in the classic locale whatever the global one is.
+  /// Binary, in the classic locale whatever the global one is. It can be put to a place from the beginning.
   std::ostream& stream();
 
   /// The temporary file, which other processes may write parts of until commit().
-  const std::filesystem::path& temporary() const { return temporary_; }
+  const std::filesystem::path& temporary() const;
 
-  /// Flushes, checks that everything was written and renames. Throws Error with the system's reason, such as a full
-  /// disk; to be called once.
+  /// Flushes, checks that everything was written and renames: where there was a file before, once the new one is on the
+  /// disk. Throws Error with the system's reason, such as a full disk; to be called once.
   void commit();
 
  private:
-  class FileBuffer;
+  class Temporary;
 
   std::filesystem::path target_;
   std::filesystem::path resolved_target_;
-  std::filesystem::path temporary_;
-  std::unique_ptr<FileBuffer> buffer_;
+  std::unique_ptr<Temporary> temporary_;
   std::ostream stream_;
 };
 

@@ -7,7 +7,11 @@
 
 namespace saw_ndt::internal {
 
-/// Opens a file for binary reading. Throws Error with the system's reason where that fails, or where it is a folder.
+/// Throws Error with the system's reason where there is no such file or it is a folder, and where it is no regular
+/// file: to open a pipe may wait forever, and a device may never end.
+SAW_NDT_EXPORT void requireRegularFile(const std::filesystem::path& path);
+
+/// Opens a regular file for binary reading. Throws Error with the system's reason where that fails.
 SAW_NDT_EXPORT std::ifstream openInputFile(const std::filesystem::path& path);
 
 }  // namespace saw_ndt::internal

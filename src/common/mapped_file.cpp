@@ -10,14 +10,15 @@
 #include <filesystem>
 #include <system_error>
 
+#include "common/input_file.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt::internal {
 
 MappedFile::MappedFile(const std::string& path) {
   namespace bi = boost::interprocess;
+  requireRegularFile(path);
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw Error(path, "", std::strerror(EISDIR));
   try {
     const bi::file_mapping file(path.c_str(), bi::read_only);
     // No empty range can be mapped.

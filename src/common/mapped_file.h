@@ -10,7 +10,9 @@
 namespace saw_ndt::internal {
 
 /// A file mapped into memory to be read. Its pages are read when they are touched, and shared with other processes that
-/// map it. A file that somebody cuts short meanwhile ends the process by SIGBUS; one that is replaced stays as it was.
+/// map it. A file that somebody cuts short meanwhile ends the process by SIGBUS when what is missing is read, which a
+/// library cannot prevent (a program can have the file named, see program_signals.h); one that is replaced stays as it
+/// was.
 class SAW_NDT_EXPORT MappedFile {
  public:
   /// @throws Error with the system's reason where the file cannot be opened or mapped, or is none

@@ -118,7 +118,7 @@ WeightedMapBuilder buildDriveMap(ScanSource& scans, const DriveMapOptions& optio
   WeightedMapBuilder map(options.resolution_m, options.segmentation);
   std::string last_failure;
   addScans(scans, internal::notingFailures(options, last_failure), map, scan_done);
-  internal::requireAnyScan(map.origin(), last_failure);
+  internal::requireAnyPoint(map.origin(), last_failure);
   return map;
 }
 

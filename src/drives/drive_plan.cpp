@@ -1,5 +1,7 @@
 #include "drives/drive_plan.h"
 
+#include <sstream>
+
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt::internal {
@@ -25,9 +27,15 @@ DriveMapOptions notingFailures(const DriveMapOptions& options, std::string& last
   return noting;
 }
 
-void requireAnyScan(const MapOrigin& origin, const std::string& last_failure) {
+void requireAnyPoint(const MapOrigin& origin, const std::string& last_failure) {
   if (origin.scan_count == 0 && !last_failure.empty()) {
     throw Error(last_failure + ", and no other scan is any better");
+  }
+  if (origin.scan_count > 0 && origin.point_count == 0) {
+    std::ostringstream reason;
+    reason << "the map would have no point: no scan of " << origin.scan_count << " has one that voxels of "
+           << origin.resolution_m << " m can be numbered up to";
+    throw Error(reason.str());
   }
 }
 
@@ -42,7 +50,7 @@ WeightedMapBuilder buildMapOfDrives(const std::vector<DrivePlan>& plans, const D
     const Recording& recording = open(static_cast<int>(i));
     addScans(*recording.scans(plans[i].scans), optionsFor(plans[i], recording, noting), map, scan_done);
   }
-  requireAnyScan(map.origin(), last_failure);
+  requireAnyPoint(map.origin(), last_failure);
   return map;
 }
 

@@ -33,8 +33,9 @@ SAW_NDT_EXPORT DriveMapOptions optionsFor(const DrivePlan& plan, const Recording
 /// The same options, by which the reason of the scan that was left out last is kept, too. Both must outlive them.
 DriveMapOptions notingFailures(const DriveMapOptions& options, std::string& last_failure);
 
-/// Throws an Error that tells the reason of a scan that was left out, where no other scan has been added.
-SAW_NDT_EXPORT void requireAnyScan(const MapOrigin& origin, const std::string& last_failure);
+/// Throws an Error that tells the reason of a scan that was left out, where no other scan has been added, and where no
+/// point of a scan was.
+SAW_NDT_EXPORT void requireAnyPoint(const MapOrigin& origin, const std::string& last_failure);
 
 /// Builds the map of several drives, whose poses are in one map frame, as buildDriveMap() that of one. The map tells
 /// the segmentation of the first one.

@@ -74,7 +74,7 @@ std::unique_ptr<Recording> openWithOwnPoses(const fs::path& path, const Recordin
 
 }  // namespace
 
-std::unique_ptr<Recording> openRecording(const fs::path& path, const RecordingOptions& options) {
+std::unique_ptr<Recording> openRecording(const fs::path& path, const RecordingOptions& options) try {
   checkOption(options.scan_rate_hz >= 0.0 && std::isfinite(options.scan_rate_hz), "scan_rate_hz", options.scan_rate_hz,
               "0 or more");
   if (!fs::exists(path)) throw Error(path.string(), "", std::strerror(ENOENT));
@@ -87,6 +87,9 @@ std::unique_ptr<Recording> openRecording(const fs::path& path, const RecordingOp
     recording = withReferencePoses(std::move(recording), options.poses_file);
   }
   return recording;
+} catch (const fs::filesystem_error& failure) {
+  // Such as of a folder that may not be searched.
+  throw Error(failure.path1().string(), "", failure.code().message());
 }
 
 }  // namespace saw_ndt

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <optional>
 
+#include "common/input_file.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt::internal {
@@ -39,8 +40,7 @@ std::optional<LinkLayer> linkLayerOf(int type) {
 void CaptureFile::Close::operator()(pcap* handle) const { pcap_close(handle); }
 
 CaptureFile::CaptureFile(const std::filesystem::path& path) : path_(path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw Error(path.string(), "", std::strerror(EISDIR));
+  requireRegularFile(path);
   errno = 0;
   std::FILE* const file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) throw Error(path.string(), "", std::strerror(errno));

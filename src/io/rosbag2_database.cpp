@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "common/input_file.h"
 #include "io/decompression.h"
 #include "saw_ndt/common/error.h"
 
@@ -51,6 +52,7 @@ bool isZstd(ByteView bytes) {
 class Rosbag2Database : public MessageFile {
  public:
   explicit Rosbag2Database(const fs::path& path) : MessageFile(path) {
+    requireRegularFile(path);
     sqlite3* database = nullptr;
     const int result =
         sqlite3_open_v2(readOnlyUri(path).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);

@@ -237,7 +237,7 @@ void searchMap(const LocalizationMapFile& file, const std::optional<SearchRegion
     // With the neighbours of those that mayBeWithin().
     places = file.tilesAround(region->T_map_base.translation().head<2>(), region->radius_m + 3.0 * kLocalizationTile_m);
   } else {
-    for (std::size_t i = 0; i < file.tileCount(); ++i) places.push_back(file.tile(i));
+    places = file.allTiles();
   }
   places.erase(std::remove_if(places.begin(), places.end(),
                               [](const LocalizationTilePlace& place) { return place.table_bytes == 0; }),

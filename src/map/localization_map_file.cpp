@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <utility>
 
@@ -20,8 +21,8 @@ namespace internal {
 
 namespace {
 
-// Numbers of tiles, and of voxels in them, are 32-bit integers.
-constexpr double kFarthestTile = 1.0e9;
+// Numbers of columns of a metre, of tiles and of voxels in them are 32-bit integers.
+constexpr double kFarthestTile = 1.5e7;
 constexpr double kFarthestVoxel = 2.0e9;
 
 constexpr std::size_t kMagicBytes = sizeof kLocalizationMapMagic - 1;
@@ -152,20 +153,49 @@ std::vector<LocalizationTilePlace> LocalizationMapFile::tilesAround(const Eigen:
   const TileCoordinate least = localizationTileAt(least_m.x(), least_m.y());
   const TileCoordinate greatest = localizationTileAt(greatest_m.x(), greatest_m.y());
   // Rows without tiles are not visited, so that the work is bounded by the tiles that there are.
+  const auto firstBehind = [&](std::size_t number, const TileCoordinate& at) {
+    const std::size_t first = firstFrom(at);
+    if (first < number) failOutOfOrder(first);
+    return first;
+  };
   for (std::size_t number = firstFrom(least); number < tile_count_;) {
     const int y = tile(number).at.y;
     if (y > greatest.y) break;
-    for (number = firstFrom({least.x, y}); number < tile_count_; ++number) {
-      const LocalizationTilePlace place = tile(number);
+    std::size_t in_row = firstBehind(number, {least.x, y});
+    for (; in_row < tile_count_; ++in_row) {
+      const LocalizationTilePlace place = tile(in_row);
       if (place.at.y != y || place.at.x > greatest.x) break;
       const Eigen::Vector2d corner_m = kLocalizationTile_m * Eigen::Vector2d(place.at.x, place.at.y);
       const Eigen::Vector2d nearest_m =
           position_m.cwiseMax(corner_m).cwiseMin(corner_m + Eigen::Vector2d::Constant(kLocalizationTile_m));
       if ((nearest_m - position_m).norm() <= radius_m) tiles.push_back(place);
     }
-    number = firstFrom({least.x, y + 1});
+    number = firstBehind(std::max(in_row, number + 1), {least.x, y + 1});
   }
+  requireDisjoint(tiles);
   return tiles;
+}
+
+std::vector<LocalizationTilePlace> LocalizationMapFile::allTiles() const {
+  std::vector<LocalizationTilePlace> tiles;
+  tiles.reserve(tile_count_);
+  for (std::size_t number = 0; number < tile_count_; ++number) {
+    tiles.push_back(tile(number));
+    if (number > 0 && !(tiles[number - 1].at < tiles[number].at)) failOutOfOrder(number);
+  }
+  requireDisjoint(tiles);
+  return tiles;
+}
+
+void LocalizationMapFile::failOutOfOrder(std::size_t number) const {
+  fail(directory_offset_ + number * sizeof(LocalizationTileRecord), "damaged: a tile is out of order");
+}
+
+// Tiles that share bytes would need memory far beyond the size of the file.
+void LocalizationMapFile::requireDisjoint(const std::vector<LocalizationTilePlace>& tiles) const {
+  std::uint64_t bytes = 0;
+  for (const LocalizationTilePlace& tile : tiles) bytes += std::uint64_t{tile.cell_bytes} + tile.table_bytes;
+  if (bytes > directory_offset_ - tiles_offset_) fail(directory_offset_, "damaged: tiles overlap");
 }
 
 void LocalizationMapFile::decode(const LocalizationTilePlace& tile, const LocalizationClip& clip,
@@ -237,6 +267,8 @@ void LocalizationMap::requireWeighting(const VoxelWeighting& weighting) const {
 }
 
 bool LocalizationMap::isOne(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;  // to open a pipe may wait forever
   std::ifstream stream(path, std::ios::binary);
   char magic[internal::kMagicBytes];
   return stream.read(magic, sizeof magic) && std::memcmp(magic, internal::kLocalizationMapMagic, sizeof magic) == 0;
@@ -250,11 +282,7 @@ std::uint64_t LocalizationMap::coarseVoxelCount() const { return file_->coarseVo
 std::uint64_t LocalizationMap::tileCount() const { return file_->tileCount(); }
 std::uint64_t LocalizationMap::fileSize() const { return file_->size(); }
 
-NdtTarget LocalizationMap::target(int threads) const {
-  std::vector<internal::LocalizationTilePlace> tiles;
-  for (std::size_t i = 0; i < file_->tileCount(); ++i) tiles.push_back(file_->tile(i));
-  return file_->targetOf(tiles, threads);
-}
+NdtTarget LocalizationMap::target(int threads) const { return file_->targetOf(file_->allTiles(), threads); }
 
 NdtTarget LocalizationMap::targetAround(const Eigen::Vector3d& position_m, double radius_m, int threads) const {
   return file_->targetOf(file_->tilesAround(position_m.head<2>(), radius_m), threads, {position_m.head<2>(), radius_m});

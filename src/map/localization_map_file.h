@@ -47,6 +47,8 @@ class SAW_NDT_EXPORT LocalizationMapFile {
   LocalizationTilePlace tile(std::size_t number) const;
   /// The number of the first tile that does not come before a coordinate; tileCount() where all do.
   std::size_t firstFrom(const TileCoordinate& at) const;
+  /// All tiles, ordered.
+  std::vector<LocalizationTilePlace> allTiles() const;
   /// The tiles that reach within a horizontal distance of a position (m).
   std::vector<LocalizationTilePlace> tilesAround(const Eigen::Vector2d& position_m, double radius_m) const;
 
@@ -63,6 +65,8 @@ class SAW_NDT_EXPORT LocalizationMapFile {
 
  private:
   [[noreturn]] void fail(std::uint64_t offset, const std::string& reason) const { failAt(path_, offset, reason); }
+  [[noreturn]] void failOutOfOrder(std::size_t number) const;
+  void requireDisjoint(const std::vector<LocalizationTilePlace>& tiles) const;
   void requireCells(bool are_valid, const LocalizationTilePlace& tile) const;
   void readHeader();
   void readMetadata(std::uint32_t size, std::uint32_t checksum);

@@ -1,10 +1,8 @@
 #include "map/map_front.h"
 
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -46,10 +44,6 @@ void failAt(const std::string& path, std::uint64_t offset, const std::string& re
 MappedFile openMapFile(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw Error(path, "", "is a folder, not a map file");
-  errno = 0;
-  if (!std::ifstream(path, std::ios::binary)) {
-    throw Error(path, "", std::string("cannot be opened: ") + std::strerror(errno));
-  }
   for (int attempt = 1;; ++attempt) {
     MappedFile file(path);
     if (attempt == kMostAttempts || !wasUpdatedMeanwhile(path, file)) return file;

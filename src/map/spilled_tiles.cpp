@@ -20,6 +20,9 @@ namespace saw_ndt::internal {
 class SpilledTiles::File {
  public:
   explicit File(const std::filesystem::path& folder) : folder_(folder.string()) {
+    descriptor_ = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (descriptor_ >= 0) return;
+    // Not every file system has files without a name.
     std::string name = (folder / ".saw_ndt_sums_XXXXXX").string();
     descriptor_ = mkostemp(name.data(), O_CLOEXEC);
     if (descriptor_ < 0) fail();

@@ -152,7 +152,7 @@ MapOfRanks buildMapOfRanks(const boost::mpi::communicator& ranks, const std::vec
     map.work.push_back({scans[rank], bytes_sent[rank]});
   }
   std::sort(map.left_out.begin(), map.left_out.end());
-  requireAnyScan(map.origin, map.left_out.empty() ? "" : map.left_out.back());
+  requireAnyPoint(map.origin, map.left_out.empty() ? "" : map.left_out.back());
   return map;
 }
 

@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "common/atomic_output.h"
+#include "common/unfinished_output.h"
 #include "common/write_at.h"
 #include "map/map_encoding.h"
 #include "map/map_tile.h"
 #include "map/sums_statistics.h"
-#include "mpi/removed_on_termination.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt::internal {
@@ -145,7 +145,9 @@ std::uint64_t writeMapOfRanks(const mpi::communicator& ranks, const std::string&
   std::string temporary;
   if (ranks.rank() == 0) temporary = std::filesystem::absolute(output.emplace(path).temporary()).string();
   mpi::broadcast(ranks, temporary, 0);
-  const RemovedOnTermination removed(temporary);
+  // Where rank 0 has died, launchers end the others by SIGTERM.
+  std::optional<UnfinishedOutput> of_rank_0;
+  if (!output) of_rank_0.emplace([&] { return temporary; });
   SharedFile file(temporary, path);
   std::size_t tile = 0;
   map.owned.forEachTile([&](const std::vector<LabelledVoxelSums>& entries) {
@@ -160,6 +162,7 @@ std::uint64_t writeMapOfRanks(const mpi::communicator& ranks, const std::string&
     output->commit();
   }
   ranks.barrier();
+  if (of_rank_0) of_rank_0->finish();
   return voxel_count;
 }
 

@@ -81,10 +81,11 @@ void drawPicture(const GnuplotPicture& picture, const fs::path& folder) {
 }
 
 void drawPng(GnuplotPicture picture, const fs::path& file) {
-  const StagedOutput output(file.has_parent_path() ? file.parent_path() : fs::path("."));
-  picture.name = file.stem().string();
+  StagedOutput output(file.has_parent_path() ? file.parent_path() : fs::path("."));
+  picture.name = "picture";  // what gnuplot writes beside it has a longer name than its own
   picture.many_points = true;
   drawPicture(picture, output.folder());
+  fs::rename(output.folder() / "picture.png", output.folder() / file.filename());
   output.commit();
 }
 

@@ -69,8 +69,7 @@ LocalizationMapSummary summarize(const LocalizationMap& map) {
   summary.tiles = file.tileCount();
   summary.file_bytes = map.fileSize();
   std::vector<std::size_t> tile_bytes;
-  for (std::size_t i = 0; i < file.tileCount(); ++i) {
-    const LocalizationTilePlace place = file.tile(i);
+  for (const LocalizationTilePlace& place : file.allTiles()) {
     tile_bytes.push_back(std::size_t{place.cell_bytes} + place.table_bytes);
     summary.search_bytes += place.table_bytes;
     file.forEachCellOf(place, [&](std::size_t level, const QuantizedCell& cell) {

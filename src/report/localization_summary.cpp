@@ -150,7 +150,7 @@ void writeLocalization(const std::filesystem::path& folder, const DriveLocalizat
     base_poses.push_back({result.stamp_s, result.T_map_base});
     camera_poses.push_back(cameraPose(result.T_map_base * T_base_lidar, T_camera_lidar));
   }
-  const StagedOutput staged(folder);
+  StagedOutput staged(folder);
   writeTumTrajectory(staged.folder() / "trajectory_tum.txt", base_poses);
   writeKittiTrajectory(staged.folder() / "trajectory_kitti.txt", camera_poses);
   writeFrames(staged.folder() / "frames.csv", run);

@@ -84,7 +84,7 @@ TEST_F(MapRemoveMovedApp, WrongUsageAndFailuresAreNamed) {
   expectFails(SAW_NDT_APP, path("a.map") + path("out.map") + drive + "-max-hit-share 0.6", 2, {"max_hit_share = 0.6"});
   expectFails(SAW_NDT_APP, path("a.map") + path("out.map") + drive + drive + "-poses p.txt", 2, {"-poses"});
   expectFails(SAW_NDT_APP, path("a.map") + path("out.map") + drive + "-scans 40:", 2, {"scan selection '40:'"});
-  expectFails(SAW_NDT_APP, path("none.map") + path("out.map") + drive, 1, {"none.map: cannot be opened: No such file"});
+  expectFails(SAW_NDT_APP, path("none.map") + path("out.map") + drive, 1, {"none.map: No such file"});
   expectFails(SAW_NDT_APP, path("old.map") + path("out.map") + drive, 1, {"old.map: offset 0: not a saw_ndt map"});
   expectFails(SAW_NDT_APP, path("a.map") + path("no/out.map") + drive, 1, {"out.map: No such file"});
   expectFails(SAW_NDT_APP, path("a.map") + path("old.map") + path("nowhere"), 1, {"nowhere: No such file"});

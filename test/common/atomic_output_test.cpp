@@ -84,5 +84,66 @@ TEST(AtomicOutput, ReportsAFailedWriteAndKeepsTheOldFile) {
   EXPECT_EQ(folder.entryCount(), 1U);
 }
 
+TEST(AtomicOutput, KeepsTheModeOfWhatItReplaces) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const auto target = folder.write("out.txt", "old");
+  for (const auto mode : {fs::perms::owner_read | fs::perms::owner_write, fs::perms(0640), fs::perms(0666)}) {
+    fs::permissions(target, mode);
+    AtomicOutput output(target);
+    EXPECT_EQ(fs::status(output.temporary()).permissions(), mode);  // nobody else can look on either
+    output.stream() << "new";
+    output.commit();
+    EXPECT_EQ(fs::status(target).permissions(), mode);
+  }
+  EXPECT_EQ(contentOf(target), "new");
+}
+
+TEST(AtomicOutput, TakesNamesOfAnyLengthThatFilesMayHave) {
+  const TemporaryFolder folder;
+  const std::string letters = "\u00fc\u4e2d";  // of two and three bytes
+  std::string of_letters = "x";
+  while (of_letters.size() + letters.size() <= 250) of_letters += letters;
+  for (const std::string& name : {std::string(250, 'a'), std::string(255, 'b'), of_letters}) {
+    AtomicOutput output(folder.path() / name);
+    output.stream() << "new";
+    output.commit();
+    EXPECT_EQ(contentOf(folder.path() / name), "new");
+  }
+  // Two names that begin alike are not taken for each other.
+  AtomicOutput a(folder.path() / (std::string(249, 'c') + "1")), b(folder.path() / (std::string(249, 'c') + "2"));
+  EXPECT_NE(a.temporary(), b.temporary());
+  expectThrows<Error>([&] { AtomicOutput output(folder.path() / std::string(256, 'd')); }, {"File name too long"});
+}
+
+TEST(AtomicOutput, OfTheSameTargetAtOnceTheLastOneStays) {
+  const TemporaryFolder folder;
+  const auto target = folder.path() / "out.txt";
+  AtomicOutput first(target), second(target);
+  first.stream() << "first";
+  second.stream() << "second";
+  second.commit();
+  EXPECT_EQ(contentOf(target), "second");
+  first.commit();
+  EXPECT_EQ(contentOf(target), "first");
+  EXPECT_EQ(folder.entryCount(), 1U);
+}
+
+TEST(AtomicOutput, WritesAtAnyPlace) {
+  const TemporaryFolder folder;
+  AtomicOutput output(folder.path() / "out.txt");
+  output.stream().seekp(5);
+  output.stream() << std::string(200000, 'x') << "end";
+  EXPECT_EQ(output.stream().tellp(), 200008);
+  output.stream().seekp(0);
+  output.stream() << "begin";
+  output.commit();
+  EXPECT_EQ(contentOf(folder.path() / "out.txt"), "begin" + std::string(200000, 'x') + "end");
+}
+
+TEST(AtomicOutput, NamesNoFileIsRefusedBeforeAnythingIsWritten) {
+  expectThrows<Error>([] { AtomicOutput output(""); }, {"No such file"});
+}
+
 }  // namespace
 }  // namespace saw_ndt

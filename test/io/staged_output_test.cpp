@@ -1,6 +1,9 @@
 #include "io/staged_output.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -37,7 +40,7 @@ TEST_F(StagedOutputTest, FilesAppearTogetherAndOthersStay) {
   folder.write("a.txt", "old");
   folder.write("b/other.txt", "other");
   {
-    const StagedOutput staged(folder.path());
+    StagedOutput staged(folder.path());
     fill(staged);
     EXPECT_EQ(contentOf(folder.path() / "a.txt"), "old");
     staged.commit();
@@ -56,7 +59,7 @@ TEST_F(StagedOutputTest, LeavesNothingWithoutCommit) {
 TEST_F(StagedOutputTest, NothingIsMovedWhereANameIsTaken) {
   fs::create_directories(folder.path() / "b" / "c" / "d.txt");
   {
-    const StagedOutput staged(folder.path());
+    StagedOutput staged(folder.path());
     fill(staged);
     expectThrows<Error>([&] { staged.commit(); }, {"d.txt: is a folder"});
   }
@@ -64,12 +67,40 @@ TEST_F(StagedOutputTest, NothingIsMovedWhereANameIsTaken) {
   fs::remove_all(folder.path() / "b");
   folder.write("b", "a file");
   {
-    const StagedOutput staged(folder.path());
+    StagedOutput staged(folder.path());
     fill(staged);
     expectThrows<Error>([&] { staged.commit(); }, {"b: Not a directory"});
   }
   EXPECT_FALSE(fs::exists(folder.path() / "a.txt"));
   EXPECT_EQ(folder.entryCount(), 1U);
+}
+
+TEST_F(StagedOutputTest, FilesThatAreReplacedLeaveTheirModes) {
+  folder.write("a.txt", "old");
+  fs::permissions(folder.path() / "a.txt", fs::perms(0600));
+  StagedOutput staged(folder.path());
+  fill(staged);
+  staged.commit();
+  EXPECT_EQ(contentOf(folder.path() / "a.txt"), "new");
+  EXPECT_EQ(fs::status(folder.path() / "a.txt").permissions(), fs::perms(0600));
+}
+
+TEST_F(StagedOutputTest, WhatAKilledProcessLeftGoesWithTheNextOne) {
+  const pid_t child = fork();
+  if (child == 0) {
+    StagedOutput staged(folder.path());
+    fill(staged);
+    raise(SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_EQ(folder.entryCount(), 1U);
+  {
+    StagedOutput staged(folder.path());
+    EXPECT_EQ(folder.entryCount(), 1U);
+    fill(staged);
+    staged.commit();
+  }
+  EXPECT_EQ(folder.entryCount(), 2U);
 }
 
 TEST_F(StagedOutputTest, AFolderThatIsMissingIsNamed) {

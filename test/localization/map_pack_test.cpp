@@ -227,40 +227,6 @@ TEST_F(MapPack, OfNothingHasNothing) {
   EXPECT_TRUE(map.targetAround(Eigen::Vector3d::Zero(), 100.0).empty());
 }
 
-// Uses all that a file has.
-void useAll(const std::string& file) {
-  const LocalizationMap map(file);
-  map.target(1);
-  for (std::size_t i = 0; i < map.file().tileCount(); ++i) {
-    PlaceIndex::Tile tile;
-    const std::string_view table = map.file().searchTable(map.file().tile(i));
-    if (!table.empty() && !decodePlaceTile(table, tile)) throw Error(file, "", "no table");
-  }
-}
-
-TEST_F(MapPack, DamageAnywhereIsAnErrorThatNamesTheFile) {
-  pack(mapOf(mixedCloud(1, 2000)), path("good"), weightingOf("weighted-s50"));
-  const std::string good = contentOf(path("good"));
-  useAll(path("good"));
-  std::mt19937 random(7);
-  std::uniform_int_distribution<int> bit(0, 7);
-  const std::string file = path("damaged");
-  for (std::size_t i = 0; i < good.size(); i += i < 400 || i + 200 > good.size() ? 1 : 7) {
-    std::string bytes = good;
-    bytes[i] = static_cast<char>(bytes[i] ^ (1 << bit(random)));
-    folder.write("damaged", bytes);
-    SCOPED_TRACE(i);
-    expectThrows<Error>([&] { useAll(file); }, {file});
-  }
-  for (std::size_t size = 0; size < good.size(); size += size < 400 ? 1 : 97) {
-    folder.write("damaged", good.substr(0, size));
-    SCOPED_TRACE(size);
-    expectThrows<Error>([&] { useAll(file); }, {file});
-  }
-  expectThrows<Error>([&] { LocalizationMap(path("none")); }, {path("none"), "No such file"});
-  expectThrows<Error>([&] { LocalizationMap(folder.path().string()); }, {"directory"});
-}
-
 TEST_F(MapPack, ForAnotherWeightingIsRefused) {
   const WeightedVoxelMap map = scatteredMap(1000);
   pack(map, path("paper"), weightingOf("weighted-s50"));

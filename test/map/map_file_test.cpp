@@ -202,7 +202,7 @@ TEST_F(MapFile, AnEmptyMapIsAMap) {
 
 TEST_F(MapFile, RefusesEveryTruncation) {
   for (const std::string& whole : allVersionsOf(mapOf(mixedCloud(1, 60)))) {
-    for (std::size_t size = 0; size < whole.size(); size += size < 300 ? 1 : 37) {
+    for (std::size_t size = 0; size < whole.size(); ++size) {
       expectRefused(whole.substr(0, size), {"offset "});
     }
     expectRefused(whole + "x", {"offset ", "truncated or damaged"});
