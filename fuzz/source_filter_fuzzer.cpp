@@ -1,5 +1,7 @@
 // Selection and thinning of a scan's points.
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "fuzzed_clouds.h"
 #include "fuzzed_file.h"
@@ -9,7 +11,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace saw_ndt;
   FuzzedDataProvider provider(data, size);
   constexpr double kSizes_m[] = {0.0, 0.2, 1.0, 1e-3, 50.0};
-  internal::SourceVoxelFilter filter(kSizes_m[provider.ConsumeIntegral<std::uint8_t>() % std::size(kSizes_m)]);
+  // Kept from input to input, as from scan to scan.
+  static std::array<std::optional<internal::SourceVoxelFilter>, std::size(kSizes_m)> filters;
+  const std::size_t size_number = provider.ConsumeIntegral<std::uint8_t>() % std::size(kSizes_m);
+  if (!filters[size_number]) filters[size_number].emplace(kSizes_m[size_number]);
+  internal::SourceVoxelFilter& filter = *filters[size_number];
   internal::SourceSelection selection;
   selection.ground_ratio = provider.ConsumeIntegralInRange<int>(0, 100) / 100.0;
   if (provider.ConsumeBool()) selection.confidence = ConfidenceOptions::paper();

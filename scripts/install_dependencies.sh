@@ -11,6 +11,7 @@ packages=(
   libpcap-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libfastcdr-dev libyaml-cpp-dev
   libboost-mpi-dev libopenmpi-dev openmpi-bin
   libgtest-dev libbenchmark-dev
+  clang libclang-rt-14-dev llvm libomp-dev
   gnuplot-nox
   python3 python3-numpy python3-rosbag python3-sensor-msgs python3-geometry-msgs python3-nav-msgs python3-std-msgs python3-tf2-msgs
 )

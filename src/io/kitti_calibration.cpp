@@ -36,8 +36,9 @@ Eigen::Isometry3d rotation(const std::filesystem::path& path, std::size_t line, 
   return rigidTransform(path, line, transform);
 }
 
-/// The numbers of the last line of one of these keys, and its own number; 0 where there is none.
-NumberLine numbersOf(const std::filesystem::path& path, const std::vector<std::string_view>& keys) {
+}  // namespace
+
+NumberLine kittiNumbers(const std::filesystem::path& path, const std::vector<std::string_view>& keys) {
   NumberLine found{0, {}};
   for (const TextLine& line : readTextLines(path)) {
     const auto [key, rest] = splitAtKey(line.text);
@@ -47,18 +48,16 @@ NumberLine numbersOf(const std::filesystem::path& path, const std::vector<std::s
   return found;
 }
 
-}  // namespace
-
 std::optional<Eigen::Isometry3d> kittiTransform(const std::filesystem::path& path,
                                                 const std::vector<std::string_view>& keys) {
-  const NumberLine line = numbersOf(path, keys);
+  const NumberLine line = kittiNumbers(path, keys);
   if (line.number == 0) return std::nullopt;
   return rigidTransform(path, line.number, line.values);
 }
 
 std::optional<Eigen::Isometry3d> kittiRotation(const std::filesystem::path& path,
                                                const std::vector<std::string_view>& keys) {
-  const NumberLine line = numbersOf(path, keys);
+  const NumberLine line = kittiNumbers(path, keys);
   if (line.number == 0) return std::nullopt;
   return rotation(path, line.number, line.values);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "io/kitti_calibration.h"
 #include "io/number_lines.h"
 #include "io/rigid_transform.h"
 #include "saw_ndt/common/error.h"
@@ -49,24 +50,17 @@ std::vector<Eigen::Isometry3d> imuPoses(const std::vector<OxtsRecord>& records) 
 }
 
 Eigen::Isometry3d readKittiRawTransform(const std::filesystem::path& path) {
-  std::optional<std::vector<double>> R, T;
-  std::size_t line_number = 0;
-  for (const TextLine& line : readTextLines(path)) {
-    const std::string key = line.text.substr(0, line.text.find(':'));
-    if (key != "R" && key != "T") continue;
-    (key == "R" ? R : T) = parseNumbers(path, line.number, std::string_view(line.text).substr(2));
-    line_number = line.number;
-  }
-  if (!R || R->size() != 9 || !T || T->size() != 3) {
+  const NumberLine R = kittiNumbers(path, {"R"}), T = kittiNumbers(path, {"T"});
+  if (R.values.size() != 9 || T.values.size() != 3) {
     throw Error(path.string(), "", "a line R of 9 numbers and a line T of 3 are needed");
   }
   std::vector<double> rows;
   for (std::size_t i = 0; i < 3; ++i) {
-    rows.insert(rows.end(), R->begin() + static_cast<std::ptrdiff_t>(3 * i),
-                R->begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
-    rows.push_back((*T)[i]);
+    rows.insert(rows.end(), R.values.begin() + static_cast<std::ptrdiff_t>(3 * i),
+                R.values.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
+    rows.push_back(T.values[i]);
   }
-  return rigidTransform(path, line_number, rows);
+  return rigidTransform(path, R.number, rows);
 }
 
 }  // namespace saw_ndt::internal

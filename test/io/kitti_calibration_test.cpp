@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "expect_throws.h"
+#include "io/kitti_oxts.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/io/kitti.h"
@@ -55,6 +56,20 @@ TEST_F(KittiCalibrationForms, WhatIsWrongIsNamedWithItsLine) {
       {"Track: 0 -1 0 0.1 0 0 -1 0.2 1 0 0 0.3\n", "calib.txt: no line Tr"}};
   for (const auto& [text, reason] : cases) {
     expectThrows<Error>([&, content = text] { read(content); }, {reason});
+  }
+}
+
+TEST_F(KittiCalibrationForms, RawTransformsNeedALineOfARotationAndOneOfATranslation) {
+  const std::string R = "R: 0 -1 0 0 0 -1 1 0 0\n";
+  const auto readRaw = [&](const std::string& text) {
+    return internal::readKittiRawTransform(folder.write("calib_velo_to_cam.txt", text));
+  };
+  for (const std::string T : {"T: 0.1 0.2 0.3\n", "T 0.1 0.2 0.3", "T : 0.1 0.2 0.3\r\n"}) {
+    EXPECT_EQ(readRaw("calib_time: 15-Mar-2012 11:37:16\n" + R + T).translation(), kPlace) << T;
+  }
+  for (const std::string T : {"", "T", "T\n", "T:", "T:\n", "T: 1 2\n", "T: 1 2 3 4\n"}) {
+    expectThrows<Error>([&] { readRaw(R + T); }, {"calib_velo_to_cam.txt", "a line T of 3"});
+    expectThrows<Error>([&] { readRaw(T + "R\nT: 1 2 3\n"); }, {"calib_velo_to_cam.txt", "a line R of 9"});
   }
 }
 
