@@ -293,6 +293,9 @@ void AppOptions::readConfig(const std::string& path) {
   try {
     // Unknown names are let through here and refused below, in the same words as on the command line.
     parsed = po::parse_config_file(stream, po::options_description(), true).options;
+  } catch (const po::invalid_config_file_syntax& error) {
+    // Its what() would look for placeholders in what it quotes, for ever where the line itself holds one.
+    throw UsageError(path + ": '" + error.tokens() + "' is no line of `name = value`");
   } catch (const po::error& error) {
     throw UsageError(path + ": " + error.what());
   }

@@ -64,7 +64,8 @@ NdtDerivatives evaluateAll(const PartsOfSource& parts, const Eigen::Isometry3d& 
     const VectorizedNdtObjective& objective = *part.objective;
     const bool reachable = VoxelPairs::reachable(objective.level_, T_map_source);
     const std::size_t end = batch_count + (reachable ? batchCount(*part.points) : 0);
-    prepared.push_back({{objective.level_, objective.method_, T_map_source},
+    // The finder of a part without batches finds nothing, but its pose must be one that voxels can be numbered at.
+    prepared.push_back({{objective.level_, objective.method_, reachable ? T_map_source : Eigen::Isometry3d::Identity()},
                         pairParameters(objective.level_, objective.method_, objective.score_, objective.weighting_),
                         batch_count,
                         end});

@@ -189,6 +189,7 @@ TEST(AppOptions, ConfigFileErrorsNameTheFile) {
                {"resolution\n", "resolution"},
                {"json = maybe\n", "'maybe' is neither true nor false"},
                {"step = 1\nstep = 2\n", "given twice"},
+               {"%invalid_line%\n", "'%invalid_line%' is no line of `name = value`"},
                {"config = b.cfg\n", "for the command line alone"},
                {"INPUT = b\n", "unknown option -INPUT"}};
   for (const auto& c : cases) {
