@@ -8,6 +8,7 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <thread>
 
 #include "app_options.h"
 #include "common/large_blocks.h"
@@ -37,6 +38,7 @@ struct Arguments {
   double minutes = 60.0, warm_up_minutes = 5.0, interval_s = 60.0;
   double radius_m = 60.0, search_budget_ms = 100.0;
   int fault_scans = 50, seed = 1;
+  double most_scans_hz = 0.0;
 };
 
 /// CPU time of all threads of this process (ms).
@@ -63,15 +65,19 @@ class Soak {
  public:
   Soak(const Arguments& arguments, const saw_ndt::Recording& recording, int threads)
       : drive_(recording, static_cast<std::size_t>(arguments.fault_scans), static_cast<std::uint64_t>(arguments.seed)),
-        localizer_(makeLocalizer(arguments, threads)) {}
+        localizer_(makeLocalizer(arguments, threads)),
+        least_period_s_(arguments.most_scans_hz > 0.0 ? 1.0 / arguments.most_scans_hz : 0.0) {}
 
   /// Drives for so long.
   saw_ndt::SoakInterval drive(double seconds) {
     using Clock = std::chrono::steady_clock;
     const auto elapsed = [begin = Clock::now()] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
     saw_ndt::SoakInterval counts;
-    do localizeNext(counts);
-    while (elapsed() < seconds);
+    do {
+      const double begin_s = elapsed();
+      localizeNext(counts);
+      std::this_thread::sleep_for(std::chrono::duration<double>(begin_s + least_period_s_ - elapsed()));
+    } while (elapsed() < seconds);
     counts.seconds = elapsed();
     hours_ += counts.seconds / 3600.0;
     counts.end_h = hours_;
@@ -107,6 +113,7 @@ class Soak {
   saw_ndt::EndlessDrive drive_;
   saw_ndt::Localizer localizer_;
   saw_ndt::SoakRecord record_;
+  double least_period_s_;  // from scan to scan
   int scans_without_pose_ = 0;
   double hours_ = 0.0;
 };
@@ -191,6 +198,7 @@ int main(int argc, char** argv) {
   app.addOption("warm-up-minutes", &arguments.warm_up_minutes, "N", "that count for no slope");
   app.addOption("interval-s", &arguments.interval_s, "SECONDS", "that a line of the table stands for");
   app.addOption("fault-scans", &arguments.fault_scans, "N", "from one fault to the next, on average; 0: none");
+  app.addOption("rate", &arguments.most_scans_hz, "HERTZ", "scans a second at most; 0: as fast as it goes");
   app.addOption("seed", &arguments.seed, "N", "of the faults");
   app.addOption("radius", &arguments.radius_m, "METRES", "around the vehicle, in which tiles are in memory");
   app.addOption("search-budget-ms", &arguments.search_budget_ms, "MILLISECONDS",
