@@ -82,7 +82,7 @@ class Inputs:
         "old.png": ["map_info", "coarse.map", "-picture", "old.png"],
         "run": ["localize", "drive2", "one.loc", "run", "-skip", "0"],
         "old_run": ["localize", "drive2", "one.loc", "old_run", "-skip", "0", "-scans", "0:4"],
-        "old_plots": ["evaluate", *POSES, "-plot", "old_plots"],
+        "old_plots": ["evaluate", *POSES, "-align", "yaw", "-plot", "old_plots"],
         "old_benchmark": ["benchmark", "drive2", "-output", "old_benchmark", "-skip", "0", "-methods", "classical",
                           "-scans", "0:4"],
     }
@@ -180,7 +180,7 @@ class Campaign:
         self.old, _ = self.state()
         self.seconds = self.measure()
         self.new, _ = self.state()
-        self.measure()
+        self.seconds = max(self.seconds, self.measure())
         again, _ = self.state()
         # What tells of times differs from run to run: it must be whole.
         self.varying = {name for name in self.new if self.new[name] != again.get(name)}

@@ -35,6 +35,13 @@ class TemporaryFolder {
     return file;
   }
 
+  /// The same, of a file that takes the place of an older one: many times faster than to write that one over, which
+  /// file systems put on the disk at once.
+  std::filesystem::path writeAnew(const std::filesystem::path& name, const std::string& content) const {
+    std::filesystem::remove(path_ / name);
+    return write(name, content);
+  }
+
   std::size_t entryCount() const {
     return static_cast<std::size_t>(
         std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));

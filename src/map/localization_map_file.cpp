@@ -12,6 +12,7 @@
 #include "map/localization_map_layout.h"
 #include "map/map_file_layout.h"
 #include "map/map_metadata.h"
+#include "map/resolution_range.h"
 #include "map/weighting_fields.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/map/localization_map.h"
@@ -62,8 +63,8 @@ void LocalizationMapFile::readHeader() {
     fail(offsetof(LocalizationMapHeader, header_bytes), "damaged: the header states an unknown layout");
   }
   origin_.resolution_m = header.resolution_m.value();
-  if (!(origin_.resolution_m > 0.0) || !std::isfinite(origin_.resolution_m)) {
-    fail(offsetof(LocalizationMapHeader, resolution_m), "damaged: the resolution is not a positive number");
+  if (!isResolution(origin_.resolution_m)) {
+    fail(offsetof(LocalizationMapHeader, resolution_m), "damaged: the resolution is not that of a map");
   }
   origin_.labelled = header.labelled.value() == 1;
   origin_.scan_count = header.scan_count.value();

@@ -10,6 +10,7 @@
 #include "map/localization_map_layout.h"
 #include "map/map_file_layout.h"
 #include "map/map_metadata.h"
+#include "map/resolution_range.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt::internal {
@@ -94,8 +95,8 @@ void MapFront::readHeader() {
     fail(offsetof(MapHeaderLayout, header_bytes), "damaged: the header states an unknown layout");
   }
   origin_.resolution_m = header.resolution_m.value();
-  if (!(origin_.resolution_m > 0.0) || !std::isfinite(origin_.resolution_m)) {
-    fail(offsetof(MapHeaderLayout, resolution_m), "damaged: the resolution is not a positive number");
+  if (!isResolution(origin_.resolution_m)) {
+    fail(offsetof(MapHeaderLayout, resolution_m), "damaged: the resolution is not that of a map");
   }
   origin_.labelled = header.flags.value() == kLabelledFlag;
   origin_.scan_count = header.scan_count.value();

@@ -11,6 +11,7 @@
 #include "map/map_order.h"
 #include "map/map_tile.h"
 #include "map/region_tiles.h"
+#include "map/resolution_range.h"
 #include "map/sums_statistics.h"
 #include "map/tile_batches.h"
 #include "saw_ndt/common/error.h"
@@ -26,7 +27,7 @@ double metresPerStep(const MapOrigin& origin) { return origin.resolution_m / kSt
 }  // namespace
 
 void MapOrigin::check() const {
-  checkOption(resolution_m > 0.0 && std::isfinite(resolution_m), "resolution_m", resolution_m, "positive");
+  checkOption(isResolution(resolution_m), "resolution_m", resolution_m, "positive, from 1e-9 to 1e9");
   if (segmentation) segmentation->check();
   checkOption(software_version.find('\n') == std::string::npos, "software_version", software_version,
               "without line breaks");

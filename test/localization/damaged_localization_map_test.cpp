@@ -104,11 +104,11 @@ class DamagedLocalizationMap : public ::testing::Test {
   }
 
   void expectRefused(const std::string& bytes, const std::string& reason = "") const {
-    folder.write("damaged", bytes);
+    folder.writeAnew("damaged", bytes);
     expectThrows<Error>([&] { useAll(); }, {path("damaged"), reason});
   }
   void expectRefusedOrHarmless(const Forger& forged, const SourcePoints& scan) const {
-    folder.write("damaged", forged.bytes());
+    folder.writeAnew("damaged", forged.bytes());
     try {
       useAndLocalize(scan);
     } catch (const Error& error) {
@@ -120,11 +120,11 @@ class DamagedLocalizationMap : public ::testing::Test {
 };
 
 TEST_F(DamagedLocalizationMap, EveryByteAndEveryPrefixIsRefused) {
-  const std::string good = goodBytes(60, {{0, 0}, {70, 0}});
-  folder.write("damaged", good);
+  const std::string good = goodBytes(400, {{32, 32}});
+  folder.writeAnew("damaged", good);
   useAll();
   for (std::size_t i = 0; i < good.size(); ++i) {
-    for (const char flip : {'\x01', '\x80', '\xFF'}) {
+    for (const char flip : {'\x01', '\xFF'}) {
       std::string bytes = good;
       bytes[i] = static_cast<char>(bytes[i] ^ flip);
       SCOPED_TRACE(i);
@@ -146,10 +146,10 @@ TEST_F(DamagedLocalizationMap, AHeaderOfAbsurdNumbersIsRefusedOrHarmless) {
   };
   using Header = LocalizationMapHeader;
   constexpr auto kHuge = std::numeric_limits<std::uint64_t>::max();
-  for (const double resolution_m : {0.0, -0.5, kInfinity, kNaN}) {
+  for (const double resolution_m : {0.0, -0.5, kInfinity, kNaN, 5e-324, 1e-310, 1e300}) {
     expectRefusedWith([&](Header& header) { header.resolution_m = resolution_m; }, "resolution");
   }
-  for (const double resolution_m : {5e-324, 1e-310, 1e-9, 1e9, 1e300}) {
+  for (const double resolution_m : {1e-9, 1e-3, 1e9}) {
     expectRefusedOrHarmless(good.header([&](Header& header) { header.resolution_m = resolution_m; }), scan);
   }
   const std::uint64_t size = good.bytes().size();
@@ -217,7 +217,7 @@ TEST_F(DamagedLocalizationMap, TilesThatShareBytesOrAreOutOfOrderAreRefused) {
     });
   }
   expectRefused(many.bytes(), "overlap");
-  folder.write("damaged", many.bytes());
+  folder.writeAnew("damaged", many.bytes());
   const LocalizationMap map(path("damaged"));
   expectThrows<Error>([&] { GlobalSearch(map).candidates(scan, {}, 1); }, {"overlap"});
   expectThrows<Error>([&] { map.targetAround(Eigen::Vector3d::Zero(), 1e4, 1); }, {"overlap"});
@@ -231,7 +231,7 @@ TEST_F(DamagedLocalizationMap, AbsurdCellsAreRefusedOrHarmless) {
   const std::size_t levels = LocalizationMap(path("good")).file().resolutions().size();
   const std::size_t heads = levels * kHeadBytes;
   for (std::size_t level = 0; level < levels; ++level) {
-    for (const std::uint32_t count : {0xFFFFFFFFU, 0x80000000U, 0x08000000U, 0U}) {
+    for (const std::uint32_t count : {0xFFFFFFFFU, 0x80000000U, 0x08000000U, 1000000U}) {
       expectRefused(good.cells(0, [&](std::string& cells) { put(cells, level * kHeadBytes, count); }).bytes());
     }
     for (const std::int32_t z : {std::numeric_limits<std::int32_t>::min(), -2000000000, 2000000000}) {
@@ -293,8 +293,8 @@ TEST_F(DamagedLocalizationMap, AbsurdCellsAreRefusedOrHarmless) {
 }
 
 TEST_F(DamagedLocalizationMap, SearchTablesThatAreNoneAreRefused) {
-  const Forger good(goodBytes(60, {{0, 0}}));
-  for (const std::string table : {std::string("no table"), std::string(1000, '\xFF'), std::string("x\x9C\x03\0", 4)}) {
+  const Forger good(goodBytes(400, {{32, 32}}));
+  for (const std::string& table : {std::string("no table"), std::string(1000, '\xFF'), std::string("x\x9C\x03\0", 4)}) {
     expectRefused(good.table(0, [&](std::string& bytes) { bytes = table; }).bytes());
   }
   expectRefused(good.table(0, [&](std::string& bytes) { bytes.resize(bytes.size() - 1); }).bytes());

@@ -77,7 +77,8 @@ class ForgedMap : public ::testing::Test {
 
   /// Uses a file in every way; false where it is refused.
   bool isTaken(const std::string& bytes) const {
-    const std::string file = folder.write("forged.map", bytes).string();
+    std::filesystem::remove(path("merged.map"));
+    const std::string file = folder.writeAnew("forged.map", bytes).string();
     try {
       const WeightedVoxelMap map = WeightedVoxelMap::load(file);
       const NdtTarget target(map);
@@ -100,13 +101,14 @@ class ForgedMap : public ::testing::Test {
 
 TEST_F(ForgedMap, WithAnyResolutionIsRefusedOrHarmless) {
   for (std::string bytes : {contentOf(saved("a.map", smallMap())), updatedBytes()}) {
-    for (const double resolution_m : {5e-324, 1e-310, 1e-300, 1e-30, 1e-9, 1e9, 1e30, 1e300, 1.7e308}) {
+    for (const double resolution_m : {1e-9, 1e-6, 1e3, 1e9}) {
       SCOPED_TRACE(resolution_m);
       put(bytes, 16, resolution_m);
       repair(bytes);
       isTaken(bytes);
     }
-    for (const double resolution_m : {0.0, -0.5, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    for (const double resolution_m :
+         {0.0, -0.5, std::nan(""), std::numeric_limits<double>::infinity(), 5e-324, 1e-310, 1e-30, 1e30, 1e300}) {
       put(bytes, 16, resolution_m);
       repair(bytes);
       EXPECT_FALSE(isTaken(bytes)) << resolution_m;
@@ -199,7 +201,7 @@ TEST_F(ForgedMap, AnyBytesWithChecksumsThatHoldAreRefusedOrHarmless) {
   constexpr unsigned char kValues[] = {0x00, 0x01, 0x7F, 0x80, 0xFF};
   for (const std::string& good : {contentOf(saved("a.map", smallMap())), updatedBytes()}) {
     const std::size_t front = frontOf(good), metadata = valueAt<std::uint32_t>(good, 68), tiles = tilesOf(good);
-    for (int trial = 0; trial < 1500; ++trial) {
+    for (int trial = 0; trial < 400; ++trial) {
       SCOPED_TRACE(trial);
       std::string bytes = good;
       // The header, the directory or anything.
