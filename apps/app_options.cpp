@@ -16,6 +16,7 @@
 
 #include "common/input_file.h"
 #include "common/instruction_set.h"
+#include "common/printable.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -102,10 +103,12 @@ std::string helpEntry(const std::string& term, const std::string& text, std::siz
 
 std::string onOneLine(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
+  return printable(text);
 }
 
 }  // namespace
+
+UsageError::UsageError(const std::string& what) : std::runtime_error(printable(what)) {}
 
 AppOptions::AppOptions(std::string name, std::string description)
     : name_(std::move(name)),
@@ -286,7 +289,7 @@ void AppOptions::setPositionals(const std::vector<std::string>& values) {
 }
 
 void AppOptions::readConfig(const std::string& path) {
-  std::ifstream stream = openInputFile(path);
+  std::ifstream stream = openTextFile(path);
   std::vector<po::option> parsed;
   try {
     // Unknown names are let through here and refused below, in the same words as on the command line.
