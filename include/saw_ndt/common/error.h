@@ -8,16 +8,16 @@
 
 namespace saw_ndt {
 
-/// Work on a file failed. what() reads "file: place: reason", or "file: reason" where no place can be named.
+/// Work on a file failed. what() reads "file: place: reason", or "file: reason" where no place can be named, control
+/// characters written as \x1b and the like.
 class SAW_NDT_EXPORT Error : public std::runtime_error {
  public:
   /// @param file    the file as the caller named it
   /// @param place   where in it, such as "line 3" or "offset 128"; may be empty
   /// @param reason  what is wrong, as a clause without a full stop
-  Error(const std::string& file, const std::string& place, const std::string& reason)
-      : std::runtime_error(file + ": " + (place.empty() ? "" : place + ": ") + reason) {}
+  Error(const std::string& file, const std::string& place, const std::string& reason);
   /// @param what  of an Error met before
-  explicit Error(const std::string& what) : std::runtime_error(what) {}
+  explicit Error(const std::string& what);
 };
 
 /// Throws std::invalid_argument "name = value: must be requirement" unless `valid`; for the check of an options struct.
