@@ -17,6 +17,7 @@
 
 #include "common/input_file.h"
 #include "common/instruction_set.h"
+#include "common/printable.h"
 #include "common/program_signals.h"
 #include "saw_ndt/common/error.h"
 
@@ -102,12 +103,9 @@ std::string helpEntry(const std::string& term, const std::string& text, std::siz
   return "  " + term + std::string(width - term.size() + 2, ' ') + wrapped(text, width + 4) + "\n";
 }
 
-std::string onOneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 }  // namespace
+
+UsageError::UsageError(const std::string& what) : std::runtime_error(printable(what)) {}
 
 AppOptions::AppOptions(std::string name, std::string description)
     : name_(std::move(name)),
@@ -288,7 +286,7 @@ void AppOptions::setPositionals(const std::vector<std::string>& values) {
 }
 
 void AppOptions::readConfig(const std::string& path) {
-  std::ifstream stream = openInputFile(path);
+  std::ifstream stream = openTextFile(path);
   std::vector<po::option> parsed;
   try {
     // Unknown names are let through here and refused below, in the same words as on the command line.
@@ -343,12 +341,12 @@ std::string AppOptions::help() const {
 }
 
 void warn(const AppOptions& app, const std::string& message) {
-  std::cerr << app.name() << ": warning: " << onOneLine(message) << std::endl;
+  std::cerr << app.name() << ": warning: " << internal::printableLine(message) << std::endl;
 }
 
 int runApp(int argc, const char* const* argv, AppOptions& app, const std::function<void()>& work) {
   const auto fail = [&](const std::string& message, int code) {
-    std::cerr << app.name() << ": " << onOneLine(message) << std::endl;
+    std::cerr << app.name() << ": " << internal::printableLine(message) << std::endl;
     return code;
   };
   handleProgramSignals();

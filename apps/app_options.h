@@ -11,7 +11,7 @@ namespace saw_ndt {
 /// The command line is wrong; runApp() answers it with exit code 2.
 class UsageError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit UsageError(const std::string& what);
 };
 
 /// The command line of an app: files first, then options, each bound to a variable whose value is the default.

@@ -1,7 +1,5 @@
 #include "saw_ndt/common/error.h"
 
-#include <algorithm>
-
 #include "common/printable.h"
 
 namespace saw_ndt {
@@ -13,16 +11,12 @@ std::string shortened(const std::string& reason) {
   return reason.size() <= kLongestReason ? reason : reason.substr(0, kLongestReason) + "...";
 }
 
-std::string onOneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return internal::printable(text);
-}
-
 }  // namespace
 
 Error::Error(const std::string& file, const std::string& place, const std::string& reason)
-    : std::runtime_error(onOneLine(file + ": " + (place.empty() ? "" : place + ": ") + shortened(reason))) {}
+    : std::runtime_error(
+          internal::printableLine(file + ": " + (place.empty() ? "" : place + ": ") + shortened(reason))) {}
 
-Error::Error(const std::string& what) : std::runtime_error(onOneLine(what)) {}
+Error::Error(const std::string& what) : std::runtime_error(internal::printableLine(what)) {}
 
 }  // namespace saw_ndt

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 
 #include "saw_ndt/common/error.h"
@@ -21,6 +22,21 @@ std::ifstream openInputFile(const std::filesystem::path& path) {
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(path.string(), "", errno != 0 ? std::strerror(errno) : "cannot be opened");
+  return stream;
+}
+
+std::ifstream openTextFile(const std::filesystem::path& path) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::ifstream stream = openInputFile(path);
+  // Looked at one by one: a pipe cannot be read again from its beginning.
+  std::size_t taken = 0;
+  while (taken < kByteOrderMark.size() && stream.peek() == static_cast<unsigned char>(kByteOrderMark[taken])) {
+    stream.get();
+    ++taken;
+  }
+  if (taken == kByteOrderMark.size()) return stream;
+  stream.clear();  // of the end of a short file
+  for (; taken > 0; --taken) stream.unget();
   return stream;
 }
 

@@ -14,4 +14,7 @@ SAW_NDT_EXPORT void requireRegularFile(const std::filesystem::path& path);
 /// Opens a regular file for binary reading. Throws Error with the system's reason where that fails.
 SAW_NDT_EXPORT std::ifstream openInputFile(const std::filesystem::path& path);
 
+/// The same of a text, behind the byte-order mark that it may begin with.
+SAW_NDT_EXPORT std::ifstream openTextFile(const std::filesystem::path& path);
+
 }  // namespace saw_ndt::internal

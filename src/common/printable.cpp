@@ -1,5 +1,7 @@
 #include "common/printable.h"
 
+#include <algorithm>
+
 namespace saw_ndt::internal {
 namespace {
 
@@ -30,6 +32,12 @@ std::string printable(const std::string& text) {
     }
   }
   return result;
+}
+
+std::string printableLine(const std::string& text) {
+  std::string line = text;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return printable(line);
 }
 
 }  // namespace saw_ndt::internal

@@ -10,4 +10,7 @@ namespace saw_ndt::internal {
 /// reach a terminal as a command nor, as a NUL, cut a message short.
 SAW_NDT_EXPORT std::string printable(const std::string& text);
 
+/// The same on one line: line feeds become blanks.
+SAW_NDT_EXPORT std::string printableLine(const std::string& text);
+
 }  // namespace saw_ndt::internal

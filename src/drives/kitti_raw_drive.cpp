@@ -63,7 +63,7 @@ class KittiOxtsDrive : public Recording {
         stamps_s_.clear();
         throw Error(files_.stamps.string(), "",
                     std::to_string(all_s.size()) + " times, where " + scan.path.string() + " needs line " +
-                        std::to_string(scan.number + 1));
+                        std::to_string(linesUpTo(scan.number)));
       }
       stamps_s_.push_back(all_s[scan.number]);
     }

@@ -98,7 +98,7 @@ std::vector<std::uint16_t> KittiSequence::readLabels(int scan) const {
 std::vector<std::size_t> KittiSequence::linesOfScans(const fs::path& path, const std::string& what,
                                                      std::size_t line_count) const {
   const bool by_position = line_count <= scans_.size();
-  const std::size_t needed = by_position ? scans_.size() : static_cast<std::size_t>(scans_.back().number) + 1;
+  const unsigned long long needed = by_position ? scans_.size() : linesUpTo(scans_.back().number);
   if (line_count < needed) {
     throw Error(path.string(), "",
                 std::to_string(line_count) + " " + what + ", where the scans need " + std::to_string(needed));

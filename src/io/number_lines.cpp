@@ -12,18 +12,15 @@ namespace saw_ndt::internal {
 
 namespace {
 constexpr std::string_view kBlanks = " \t\r\f\v";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 }  // namespace
 
 std::string linePlace(std::size_t number) { return "line " + std::to_string(number); }
 
 std::vector<TextLine> readAllLines(const std::filesystem::path& path) {
-  std::ifstream stream = openInputFile(path);
+  std::ifstream stream = openTextFile(path);
   std::vector<TextLine> lines;
   std::string text;
   for (std::size_t number = 1; std::getline(stream, text); ++number) {
-    if (number == 1 && text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
-      text.erase(0, kByteOrderMark.size());
     if (text.find_first_not_of(kBlanks) != std::string::npos) lines.push_back({number, text});
   }
   if (stream.bad()) throw Error(path.string(), "", "could not be read");

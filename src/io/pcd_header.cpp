@@ -21,7 +21,7 @@ constexpr std::uint64_t kGreatestFieldValue = 1U << 20U;
 
 class HeaderReader {
  public:
-  explicit HeaderReader(const std::filesystem::path& path) : path_(path), stream_(openInputFile(path)) {}
+  explicit HeaderReader(const std::filesystem::path& path) : path_(path), stream_(openTextFile(path)) {}
 
   PcdHeader read() {
     std::string kind;

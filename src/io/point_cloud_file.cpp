@@ -119,6 +119,14 @@ void writePcd(const std::filesystem::path& path, const pcl::PCLPointCloud2& clou
   file.viewpoint = {sensor_origin.x(), sensor_origin.y(), sensor_origin.z(), q.w(), q.x(), q.y(), q.z()};
   for (const pcl::PCLPointField& field : cloud.fields) {
     file.columns.push_back({fieldOf(path, field), field.offset, cloud.point_step});
+    if (field.offset + file.columns.back().field.bytes() > cloud.point_step) {
+      throw Error(path.string(), "", "the field " + field.name + " does not lie within a point");
+    }
+  }
+  if (cloud.point_step > 0 && cloud.data.size() / cloud.point_step < file.points) {
+    throw Error(path.string(), "",
+                std::to_string(cloud.data.size() / cloud.point_step) + " points are no cloud of " +
+                    std::to_string(cloud.width) + " x " + std::to_string(cloud.height));
   }
   file.bytes.assign(cloud.data.begin(), cloud.data.end());
   writePcdCloud(path, file);

@@ -11,6 +11,7 @@
 #include "localization/place_table.h"
 #include "localization/scan_outline.h"
 #include "map/localization_map_file.h"
+#include "registration/source_check.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
 
@@ -281,6 +282,7 @@ GlobalSearch::GlobalSearch(const LocalizationMap& map, const GlobalSearchOptions
 
 std::vector<PoseCandidate> GlobalSearch::candidates(const SourcePoints& source,
                                                     const std::optional<SearchRegion>& region, int threads) const {
+  requireRegistrable(source);
   const ScanOutline outline = outlineOf(source, parts_->options.cells);
   const auto cell_count = static_cast<double>(outline.cells.size());
   if (outline.cells.size() < static_cast<std::size_t>(IndexSearch::leastCount(outline, parts_->options))) return {};

@@ -78,6 +78,14 @@ std::uint64_t addRange(const ScanView& points, const LabelView& labels, std::siz
   return count;
 }
 
+// Throws std::invalid_argument where a label of a scan is none.
+void requireLabels(const LabelView& labels, std::size_t points) {
+  if (!labels.known()) return;
+  std::uint8_t greatest = 0;
+  for (std::size_t i = 0; i < points; ++i) greatest = std::max(greatest, labels.first[i * labels.stride]);
+  structuralLabelFromValue(greatest);
+}
+
 }  // namespace
 
 WeightedMapBuilder::WeightedMapBuilder(double resolution_m, std::optional<SegmentationOptions> segmentation)
@@ -130,6 +138,7 @@ void WeightedMapBuilder::requireAddable(const LabelView& labels, const Eigen::Is
 void WeightedMapBuilder::addScan(const ScanView& points, const LabelView& labels, const Eigen::Isometry3d& T_map_scan,
                                  int threads) {
   requireAddable(labels, T_map_scan);
+  requireLabels(labels, points.size);
   beginAdding(labels.known(), SAW_NDT_VERSION);
   ++origin_.scan_count;
   // Not while a scan may be continued: a voxel counts it once.
@@ -141,6 +150,7 @@ void WeightedMapBuilder::continueScan(const ScanView& points, const LabelView& l
                                       const Eigen::Isometry3d& T_map_scan, int threads) {
   if (origin_.scan_count == 0) return addScan(points, labels, T_map_scan, threads);
   requireAddable(labels, T_map_scan);
+  requireLabels(labels, points.size);
   beginAdding(labels.known(), SAW_NDT_VERSION);
   addPoints(points, labels, T_map_scan, threads);
 }

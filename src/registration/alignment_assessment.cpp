@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kSampledPoints = 1024;
 constexpr std::size_t kPointsPerChunk = 128;
 
-// Fewer sampled points on surfaces of the map determine no pose of six parameters.
+// Fewer sampled points on surfaces of the map, each at another place, determine no pose of six parameters.
 constexpr std::size_t kMinMatchedPoints = 10;
 
 // A point lies on the surface of its voxel within so many squared standard deviations.
@@ -47,6 +47,24 @@ struct Motions {
   std::array<Eigen::Vector3d, 6> translation, rotation;
 };
 
+// Places of points, each once and no more than count: a point that is given many times tells no more than once.
+class Places {
+ public:
+  void add(const Eigen::Vector3f& place) {
+    if (count_ == places_.size()) return;
+    const auto end = places_.begin() + static_cast<std::ptrdiff_t>(count_);
+    if (std::find(places_.begin(), end, place) == end) places_[count_++] = place;
+  }
+  void add(const Places& others) {
+    for (std::size_t i = 0; i < others.count_; ++i) add(others.places_[i]);
+  }
+  bool areEnough() const { return count_ == places_.size(); }
+
+ private:
+  std::array<Eigen::Vector3f, kMinMatchedPoints> places_;
+  std::size_t count_ = 0;
+};
+
 struct SampleSums {
   Vector6d curvature = Vector6d::Zero();    // along each direction
   Vector6d held = Vector6d::Zero();         // without what is negligible
@@ -55,6 +73,7 @@ struct SampleSums {
   std::size_t matched = 0;  // points on a surface
   std::size_t judged = 0;   // points that overlap is told of
   std::size_t judged_and_matched = 0;
+  Places matched_places;
 
   SampleSums& operator+=(const SampleSums& other) {
     curvature += other.curvature;
@@ -64,6 +83,7 @@ struct SampleSums {
     matched += other.matched;
     judged += other.judged;
     judged_and_matched += other.judged_and_matched;
+    matched_places.add(other.matched_places);
     return *this;
   }
 };
@@ -133,6 +153,7 @@ class PointSampler {
     sums.judged += judged ? 1 : 0;
     sums.judged_and_matched += judged && surface.fits() ? 1 : 0;
     sums.matched += surface.fits() ? 1 : 0;
+    if (surface.fits()) sums.matched_places.add({source_.x[point], source_.y[point], source_.z[point]});
 
     const ScoreParameters& score = scores_[surface.level];
     const double weight = score.amplitude * score.d2 * std::exp(-0.5 * score.d2 * surface.squared_mahalanobis) *
@@ -205,7 +226,7 @@ void assessAlignment(const NdtTarget& target, const SourcePoints& source, const 
   const Matrix6d directions = unit.asDiagonal() * curvature.eigenvectors();
   result.covariance =
       directions * variance.asDiagonal() * directions.transpose() + freeCovariance(result.free_directions);
-  const bool fits = sums.matched >= kMinMatchedPoints && result.overlap >= options.min_overlap;
+  const bool fits = sums.matched_places.areEnough() && result.overlap >= options.min_overlap;
   if (!fits && (result.converged() || result.status == AlignmentStatus::ITERATION_LIMIT)) {
     result.status = AlignmentStatus::UNDETERMINED;
   }

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "common/executor.h"
+#include "common/middle_value.h"
 #include "map/ndt_level.h"
 #include "registration/alignment_assessment.h"
 #include "registration/ndt_evaluation.h"
 #include "registration/optimizers.h"
+#include "registration/source_check.h"
 
 namespace saw_ndt {
 
@@ -61,12 +63,31 @@ void alignOnSeveralLevels(const NdtTarget& target, const AlignmentOptions& optio
 // that distance, and a step of the rotation would throw the points far off (m).
 constexpr double kFarMiddle_m = 100.0;
 
+// Along each axis the median of a sample of the points.
+Eigen::Vector3d medianOf(const SourcePoints& source) {
+  constexpr std::size_t kSampledPoints = 1000;
+  const std::size_t stride = (source.size() + kSampledPoints - 1) / kSampledPoints;
+  std::vector<float> sample;
+  const auto median = [&](const std::vector<float>& values) {
+    sample.clear();
+    for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
+    return static_cast<double>(middleValue(sample));
+  };
+  return {median(source.x), median(source.y), median(source.z)};
+}
+
 // The middle of the points, to be taken as their origin, or the origin that they have.
 Eigen::Vector3d rotationCentre(const SourcePoints& source) {
+  const auto ifFar = [](const Eigen::Vector3d& middle) {
+    return middle.norm() > kFarMiddle_m ? middle : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  };
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < source.size(); ++i) sum += Eigen::Vector3d(source.x[i], source.y[i], source.z[i]);
-  const Eigen::Vector3d middle = sum / static_cast<double>(source.size());
-  return middle.norm() > kFarMiddle_m ? middle : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d mean = sum / static_cast<double>(source.size());
+  if (mean.norm() <= kFarMiddle_m) return Eigen::Vector3d::Zero();
+  // A few points that are far from all others must not lead away from these.
+  const Eigen::Vector3d median = medianOf(source);
+  return (mean - median).norm() <= kFarMiddle_m ? mean : ifFar(median);
 }
 
 void moveTo(const Eigen::Vector3d& origin, const SourcePoints& source, SourcePoints& moved) {
@@ -118,6 +139,7 @@ NdtAligner& NdtAligner::operator=(const NdtAligner&) { return *this; }
 AlignmentResult NdtAligner::align(const NdtTarget& target, const SourcePoints& source, const Eigen::Isometry3d& guess,
                                   const AlignmentOptions& options) {
   options.check();
+  requireRegistrable(source);
   if (!guess.matrix().allFinite()) throw std::invalid_argument("the initial guess is not finite");
   AlignmentResult result;
   result.T_map_source = guess;

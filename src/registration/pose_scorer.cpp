@@ -5,6 +5,7 @@
 #include "common/executor.h"
 #include "registration/batch_voxel_finder.h"
 #include "registration/likelihoods.h"
+#include "registration/source_check.h"
 #include "saw_ndt/common/error.h"
 
 namespace saw_ndt {
@@ -31,6 +32,7 @@ struct PoseScorer::Parts {
 PoseScorer::PoseScorer(const NdtTarget& target, const SourcePoints& source, double outlier_ratio)
     : parts_(std::make_unique<Parts>()) {
   checkOption(outlier_ratio > 0.0 && outlier_ratio < 1.0, "outlier_ratio", outlier_ratio, "between 0 and 1, exclusive");
+  internal::requireRegistrable(source);
   parts_->target = target;
   parts_->outlier_ratio = outlier_ratio;
   parts_->source.order(source, target.resolution(), ConfidenceOptions::uniform());

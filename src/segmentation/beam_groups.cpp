@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/middle_value.h"
+#include "common/rows_and_columns.h"
 #include "saw_ndt/common/geometry.h"
 #include "segmentation/point_measurements.h"
 #include "segmentation/ring_runs.h"
@@ -13,7 +14,6 @@ namespace {
 
 constexpr char kFileOrder[] = "file order";
 constexpr int kLeastBeams = 4;
-constexpr int kMostBeams = 1024;
 constexpr std::size_t kLeastPoints = 8;
 // Sensors measure from a ring of some centimetres rather than from a point: near returns are off their beam.
 constexpr float kLeastRange_m = 1.0F;
@@ -55,7 +55,7 @@ BeamGroups grouped(const std::string& evidence, const ScanView& scan, const Poin
   result.numbered = evidence != kFileOrder;
   std::vector<std::vector<Direction>> directions(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < scan.size; ++i) {
-    if (points.range[i] < kLeastRange_m) continue;
+    if (points.range[i] < kLeastRange_m || points.range[i] > kFarthestReturn_m) continue;
     const float* const p = scan.point(i);
     const double sine = std::clamp(static_cast<double>(points.elevationSine(scan, i)), -1.0, 1.0);
     directions[static_cast<std::size_t>(group_of_point(i))].push_back(
@@ -63,7 +63,9 @@ BeamGroups grouped(const std::string& evidence, const ScanView& scan, const Poin
   }
   for (int number = 0; number < count; ++number) {
     const std::vector<Direction>& of_group = directions[static_cast<std::size_t>(number)];
-    if (of_group.size() >= kLeastPoints) result.groups.push_back(groupOf(number, of_group));
+    if (of_group.size() < kLeastPoints) continue;
+    const BeamGroup group = groupOf(number, of_group);
+    if (std::abs(group.elevation_deg) < kSteepestBeam_deg) result.groups.push_back(group);
   }
   return result;
 }
@@ -73,7 +75,7 @@ int ringCount(const ScanView& scan) {
   int count = 0;
   for (std::size_t i = 0; i < scan.size; ++i) {
     const double ring = scan.rings[i];
-    if (!(ring >= 0.0 && ring < kMostBeams) || ring != std::floor(ring)) return 0;
+    if (!(ring >= 0.0 && ring < static_cast<double>(kMostBeams)) || ring != std::floor(ring)) return 0;
     count = std::max(count, static_cast<int>(ring) + 1);
   }
   return count;
@@ -118,12 +120,12 @@ std::vector<BeamGroups> beamGroupsOf(const ScanView& scan) {
           grouped("rings", scan, points, count, [&](std::size_t i) { return static_cast<int>(scan.rings[i]); }));
     }
   }
-  if (scan.height > 1 && scan.width * scan.height == scan.size) {
-    if (scan.height <= static_cast<std::size_t>(kMostBeams)) {
+  if (isOrganized(scan)) {
+    if (scan.height <= kMostBeams) {
       found.push_back(grouped("rows", scan, points, static_cast<int>(scan.height),
                               [&](std::size_t i) { return static_cast<int>(i / scan.width); }));
     }
-    if (scan.width <= static_cast<std::size_t>(kMostBeams)) {
+    if (scan.width <= kMostBeams) {
       found.push_back(grouped("rows", scan, points, static_cast<int>(scan.width),
                               [&](std::size_t i) { return static_cast<int>(i % scan.width); }));
     }

@@ -8,6 +8,13 @@
 
 namespace saw_ndt::internal {
 
+/// A sensor has no more beams than these,
+constexpr std::size_t kMostBeams = 1024;
+/// none as steep as this, which is what lies straight above or below it (degrees),
+constexpr double kSteepestBeam_deg = 89.9;
+/// and sees no return as far away (m).
+constexpr float kFarthestReturn_m = 1.0e4F;
+
 /// Points of a scan that one beam may have measured.
 struct BeamGroup {
   int number = 0;              ///< of the ring, row or run

@@ -148,8 +148,10 @@ BeamGroups crowdedElevations(const ScanView& scan) {
   for (std::size_t i = 0; i < scan.size; ++i) {
     const float* const p = scan.point(i);
     const float horizontal = std::hypot(p[0], p[1]);
-    if (!(std::hypot(horizontal, p[2]) > kLeastRange_m) || !std::isfinite(horizontal) || !std::isfinite(p[2])) continue;
+    const float range = std::hypot(horizontal, p[2]);
+    if (!(range > kLeastRange_m && range <= kFarthestReturn_m)) continue;
     const double elevation_deg = degreesFromRadians(std::atan2(p[2], horizontal));
+    if (!(std::abs(elevation_deg) < kSteepestBeam_deg)) continue;
     const std::size_t bin = std::min(kBins - 1, static_cast<std::size_t>((elevation_deg + 90.0) / kBin_deg));
     points[bin] += 1.0;
     sums[bin] += elevation_deg;
@@ -182,7 +184,7 @@ BeamGroups crowdedElevations(const ScanView& scan) {
   // Elevations of any value fill the bins between the outermost.
   constexpr double kMostUsedShare = 0.5;
   constexpr std::size_t kLeastBeams = 4;
-  if (found.groups.size() < kLeastBeams || wide > kMostWide * total) return {};
+  if (found.groups.size() < kLeastBeams || found.groups.size() > kMostBeams || wide > kMostWide * total) return {};
   const double extent = (found.groups.back().elevation_deg - found.groups.front().elevation_deg) / kBin_deg;
   return used_bins < kMostUsedShare * extent ? found : BeamGroups{};
 }

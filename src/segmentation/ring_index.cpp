@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/middle_value.h"
+#include "common/rows_and_columns.h"
 #include "saw_ndt/common/geometry.h"
 
 namespace saw_ndt::internal {
@@ -34,7 +35,7 @@ constexpr double kMostRings = 1024.0;
 
 void RingIndex::assign(const ScanView& scan, const PointMeasurements& points, const SensorModel& sensor) {
   const auto rows = static_cast<std::size_t>(sensor.rows());
-  const bool is_organized = scan.height > 1 && scan.width * scan.height == scan.size;
+  const bool is_organized = isOrganized(scan);
   runs_.clear();
   if (is_organized && scan.height == rows) {
     source_ = VerticalIndexSource::ORGANIZED_ROW;

@@ -178,6 +178,22 @@ TEST(AppOptions, ConfigFileGivesWayToTheCommandLine) {
   }
 }
 
+TEST(AppOptions, AConfigFileMayBeginWithAByteOrderMark) {
+  const TemporaryFolder folder;
+  TestApp t;
+  EXPECT_EQ(t.run({"in", "-config", folder.write("a.cfg", "\xEF\xBB\xBFstep = 7\n").string()}), 0) << t.errors;
+  EXPECT_EQ(t.step, 7);
+}
+
+TEST(AppOptions, WhatAFileSaysReachesNoTerminalAsACommand) {
+  const TemporaryFolder folder;
+  TestApp config, work;
+  EXPECT_EQ(config.run({"in", "-config", folder.write("a.cfg", "st\x1b[2Jep = 7\n").string()}), 2);
+  EXPECT_NE(config.errors.find("unknown option -st\\x1b[2Jep"), std::string::npos) << config.errors;
+  EXPECT_EQ(work.run({"in"}, [] { throw std::invalid_argument("name = \x1b[2J\nis none"); }), 1);
+  EXPECT_EQ(work.errors, "saw_ndt_test: name = \\x1b[2J is none\n");
+}
+
 TEST(AppOptions, ConfigFileErrorsNameTheFile) {
   const TemporaryFolder folder;
   const struct {

@@ -168,6 +168,17 @@ TEST_F(KittiSequenceTest, LinesBelongToFileNumbersWhereTheyCoverTheWholeDrive) {
   expectThrows<Error>([&] { KittiSequence(folder).stamps(); }, {"times.txt", "3 times", "need 4"});
 }
 
+TEST_F(KittiSequenceTest, ANumberThatIsTheGreatestHasNoLine) {
+  const std::string greatest = std::to_string(std::numeric_limits<unsigned long long>::max());
+  std::filesystem::rename(folder / "velodyne/000001.bin", folder / ("velodyne/" + greatest + ".bin"));
+  data.write("sequences/07/times.txt", "0\n1\n2\n3\n");
+  data.write("poses/07.txt", std::string(kPoses) + kPoses);
+  const KittiSequence sequence(folder);
+  EXPECT_EQ(sequence.scanName(1), greatest + ".bin");
+  expectThrows<Error>([&] { sequence.stamps(); }, {"times.txt", "4 times", "need " + greatest});
+  expectThrows<Error>([&] { sequence.posesLidar(); }, {"07.txt", "4 poses", "need " + greatest});
+}
+
 TEST_F(KittiSequenceTest, NamesWhatIsTooShort) {
   data.write("sequences/07/times.txt", "0.0\n");
   data.write("poses/07.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");

@@ -198,6 +198,7 @@ TEST_F(PcdScan, HeadsAreCheckedWhole) {
   std::string other_ends;
   for (const char c : good) other_ends += c == '\n' ? std::string("\r\n") : std::string(1, c);
   expectThePoints(readScanPoints(folder.write("a.pcd", other_ends)));
+  expectThePoints(readScanPoints(folder.write("a.pcd", "\xEF\xBB\xBF" + good)));
 }
 
 TEST_F(PcdScan, AsciiValuesAreCheckedOneByOne) {

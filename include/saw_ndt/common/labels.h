@@ -27,7 +27,8 @@ inline StructuralLabel structuralLabelFromValue(std::uint32_t value) {
   return static_cast<StructuralLabel>(value);
 }
 
-/// The labels of a scan's points, wherever they lie in memory: nothing is copied, nothing is owned.
+/// The labels of a scan's points, wherever they lie in memory: nothing is copied, nothing is owned. Threads may share
+/// it while nobody writes to what it views.
 struct LabelView {
   LabelView() = default;
   /// One label after the other.

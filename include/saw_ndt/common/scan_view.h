@@ -47,7 +47,8 @@ class PointField {
   double (*read_)(const unsigned char*) = nullptr;
 };
 
-/// One scan as this library reads it, whatever the point type: nothing is copied, nothing is owned.
+/// One scan as this library reads it, whatever the point type: nothing is copied, nothing is owned. Threads may share
+/// it while nobody writes to what it views.
 struct ScanView {
   /// x of the first point; y and z follow it. Metres, LiDAR frame: x forward, y left, z up.
   const float* xyz = nullptr;

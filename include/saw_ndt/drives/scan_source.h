@@ -21,7 +21,7 @@ struct RecordedScan : ScanPoints {
   std::string failure;                           ///< why the points could not be read, empty where they could
 };
 
-/// Scans one after the other, of a recording of whatever kind.
+/// Scans one after the other, of a recording of whatever kind. Not to be shared by threads.
 class SAW_NDT_EXPORT ScanSource {
  public:
   virtual ~ScanSource() = default;

@@ -39,8 +39,8 @@ struct PoseCandidate {
 /// Finds where in a map a scan was taken when nobody knows. A scan is turned into cells of 1 m that hold points which
 /// are not ground, by their height above it; so position and heading in the plane are all that is unknown. Every place
 /// with ground in the map and every heading is tried: how many cells of the scan meet one of the map is counted for
-/// hundreds of places at once, bit by bit, which is faster than to bound and leave out. Immutable, and cheap to copy
-/// since copies share the index.
+/// hundreds of places at once, bit by bit, which is faster than to bound and leave out. Immutable, cheap to copy
+/// since copies share the index, and safe to search from many threads.
 class SAW_NDT_EXPORT GlobalSearch {
  public:
   /// @param target  of a map whose ground is about level underfoot and whose z axis points up
@@ -53,7 +53,8 @@ class SAW_NDT_EXPORT GlobalSearch {
   /// The poses at which most of a scan is found in the map, the best first: each another place or heading.
   /// @param source   in the frame of the base, which is about upright; labels help
   /// @param region   nothing: everywhere
-  /// @throws Error where a table of a localization map is damaged
+  /// @throws Error where a table of a localization map is damaged, std::invalid_argument where a point of the source is
+  /// not within reach or has no label
   /// @param threads  0: all cores; the candidates do not depend on it
   std::vector<PoseCandidate> candidates(const SourcePoints& source, const std::optional<SearchRegion>& region = {},
                                         int threads = 0) const;

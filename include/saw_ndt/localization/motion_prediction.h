@@ -62,7 +62,7 @@ struct UncertainPose {
 /// bounded. Before there are two, the last pose. Beside the pose it carries the covariance of pose and velocity, that
 /// of just this estimator: free directions keep the prediction and its growing uncertainty, and an acceleration of
 /// unknown size is reckoned with but not estimated (a "consider" state). Stamps may be wrong: after a gap, and where
-/// they do not grow, the covariance holds the motion of half the time more or less.
+/// they do not grow, the covariance holds the motion of half the time more or less. Not to be shared by threads.
 class SAW_NDT_EXPORT MotionPrediction {
  public:
   explicit MotionPrediction(const MotionPredictionOptions& options = {});

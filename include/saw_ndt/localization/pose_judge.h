@@ -79,7 +79,7 @@ struct PoseExpectation {
   bool anywhere = false;         ///< nothing at all is expected
 };
 
-/// Judges the result of an alignment.
+/// Judges the result of an alignment. Immutable, and safe to use from many threads.
 class SAW_NDT_EXPORT PoseJudge {
  public:
   /// @throws std::invalid_argument where an option does not hold

@@ -12,7 +12,8 @@
 namespace saw_ndt {
 
 /// Tells of a position in the map frame (m) whether it belongs, and of a box whether any position of it may: of a large
-/// map, boxes of which none belongs are not looked at. Asked by several threads at a time where a function has threads.
+/// map, boxes of which none belongs are not looked at. Its functions are asked by several threads at a time where what
+/// takes it has threads; the regions below are safe to share.
 class SAW_NDT_EXPORT MapRegion {
  public:
   using Contains = std::function<bool(const Eigen::Vector3d& position_m)>;

@@ -28,8 +28,8 @@ struct MovedVoxelOptions {
 /// and ends clearly behind, and so do all rays around. Voxels beside those that go, go too where at least one scan in
 /// ten saw through them. What is labelled ground stays.
 ///
-/// What comes out depends neither on the order of scans nor on the threads that add them. docs/moving_objects.md has
-/// the method with its limits.
+/// What comes out depends neither on the order of scans nor on the threads that add them, which may do so at once; the
+/// rest is not to be called meanwhile. docs/moving_objects.md has the method with its limits.
 class SAW_NDT_EXPORT MovedVoxels {
  public:
   /// @throws std::invalid_argument for options that do not hold, and for a map that does not tell how many scans met

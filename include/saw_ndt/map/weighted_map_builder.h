@@ -24,7 +24,8 @@ class VoxelSumsTable;
 }  // namespace internal
 
 /// Collects labelled points into voxel sums, scan after scan. Memory grows with the voxels met, never with the
-/// points; the result does not depend on the order of scans or on how they were spread over builders.
+/// points; the result does not depend on the order of scans or on how they were spread over builders. Not to be shared
+/// by threads: each may have a builder of its own, and one of them merges the others.
 class SAW_NDT_EXPORT WeightedMapBuilder {
  public:
   /// @param resolution_m  edge of a voxel, positive
@@ -47,8 +48,8 @@ class SAW_NDT_EXPORT WeightedMapBuilder {
   /// @param labels      of each point of the scan, values of StructuralLabel
   /// @param T_map_scan  pose of the scan's frame in the map frame
   /// @param threads     0: all cores; the result does not depend on it
-  /// @throws std::invalid_argument for a pose that is not finite, mixed kinds, or no labels where their segmentation
-  /// has been given
+  /// @throws std::invalid_argument for a pose that is not finite, a label that is none, mixed kinds, or no labels where
+  /// their segmentation has been given
   void addScan(const ScanView& scan, const LabelView& labels, const Eigen::Isometry3d& T_map_scan, int threads = 1);
 
   /// Adds further points of the scan that was added last, such as the next block of a cloud too large for the memory:

@@ -14,7 +14,7 @@ namespace saw_ndt {
 
 /// Keeps the share of ground points that GroundSampler tells, and every other point, noise included. Labels come from
 /// setLabels(), or else from the `label` field of the points. Compiled for pcl::PointXYZ, PointXYZI and PointXYZL; for
-/// other types include impl/ground_subsampling.hpp.
+/// other types include impl/ground_subsampling.hpp. One object is not to be shared by threads; the cloud may be.
 template <typename PointT>
 class SAW_NDT_EXPORT GroundSubsampling : public pcl::FilterIndices<PointT> {
  public:

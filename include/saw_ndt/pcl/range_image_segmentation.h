@@ -19,7 +19,7 @@ namespace saw_ndt {
 ///
 /// Of the points that setIndices() names, each is either kept or removed (setNegative() swaps the two). The others are
 /// not looked at: their label is Noise. Compiled for pcl::PointXYZ, PointXYZI and PointXYZL; for other types include
-/// impl/range_image_segmentation.hpp.
+/// impl/range_image_segmentation.hpp. One object is not to be shared by threads; the cloud may be.
 template <typename PointT>
 class SAW_NDT_EXPORT RangeImageSegmentation : public pcl::FilterIndices<PointT> {
  public:

@@ -31,7 +31,10 @@ namespace saw_ndt {
 ///  - setResolution() and setMinPointPerVoxel() take effect at once, in whatever order calls come;
 ///  - an empty target or source replaces the one before it; aligning then fails instead of using the old one;
 ///  - the target may lie anywhere: no bound on the extent of its voxel grid;
-///  - the k-d tree of the target is built only when getFitnessScore() asks for it.
+///  - the k-d tree of the target is built only when getFitnessScore() asks for it, which without a source is the
+///    greatest number, as where no point has a neighbour;
+///  - an index of setIndices() beyond the source is a std::out_of_range of align().
+/// One object is not to be shared by threads; copies may be used at the same time, and targets and clouds be shared.
 template <typename PointSource, typename PointTarget, typename Scalar = float>
 class SAW_NDT_EXPORT WeightedNormalDistributionsTransform : public pcl::Registration<PointSource, PointTarget, Scalar> {
   using Base = pcl::Registration<PointSource, PointTarget, Scalar>;
@@ -53,9 +56,15 @@ class SAW_NDT_EXPORT WeightedNormalDistributionsTransform : public pcl::Registra
   WeightedNormalDistributionsTransform& operator=(const WeightedNormalDistributionsTransform& other);
 
   /// Builds the voxels of a target cloud at once; an empty cloud leaves no target.
-  /// @throws std::invalid_argument where a `label` field holds what is no StructuralLabel
+  /// @throws std::invalid_argument where a `label` field holds what is no StructuralLabel, unless weights are off
   void setInputTarget(const PointCloudTargetConstPtr& cloud) override;
   void setInputSource(const PointCloudSourceConstPtr& cloud) override;
+
+  /// As pcl::Registration.
+  /// @throws std::out_of_range where setIndices() names a point that the source does not have; through a pointer to
+  /// pcl::Registration, PCL reads such points before this class is asked
+  void align(PointCloudSource& output) { align(output, Matrix4::Identity()); }
+  void align(PointCloudSource& output, const Matrix4& guess);
 
   /// Registers to a map instead of a cloud; getFitnessScore() then measures to the means of its voxels.
   /// Arithmetic::DOUBLE needs one made with CellPrecision::SINGLE_AND_DOUBLE.
@@ -87,10 +96,12 @@ class SAW_NDT_EXPORT WeightedNormalDistributionsTransform : public pcl::Registra
   NeighborhoodSearchMethod getNeighborhoodSearchMethod() const { return options_.neighborhood_search; }
   void setOptimizer(Optimizer optimizer) { options_.optimizer = optimizer; }
   Optimizer getOptimizer() const { return options_.optimizer; }
-  void setUseWeights(bool use_weights) { options_.use_weights = use_weights; }
+  /// Where weights are off, labels of a target cloud that are no StructuralLabel, such as classes, do not matter.
+  /// @throws std::invalid_argument where they are switched on with such a target
+  void setUseWeights(bool use_weights);
   bool getUseWeights() const { return options_.use_weights; }
   /// 0, the default: all cores. The result does not depend on it.
-  void setNumberOfThreads(unsigned int threads) { options_.threads = static_cast<int>(threads); }
+  void setNumberOfThreads(unsigned int threads);
 
   /// Everything else about the alignment. Iterations and epsilons are pcl::Registration's own
   /// (setMaximumIterations(), setTransformationEpsilon(), setTransformationRotationEpsilon()) and are not read here.
@@ -116,6 +127,7 @@ class SAW_NDT_EXPORT WeightedNormalDistributionsTransform : public pcl::Registra
   void copyFrom(const WeightedNormalDistributionsTransform& other);
   void buildTarget(const PointCloudTarget& cloud);
   void rebuildTarget();
+  void takeOptions(const AlignmentOptions& options);
   SourcePoints selectedSource() const;
   AlignmentOptions effectiveOptions() const;
 

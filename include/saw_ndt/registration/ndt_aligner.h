@@ -19,7 +19,8 @@ class SAW_NDT_EXPORT NdtAligner {
   NdtAligner& operator=(const NdtAligner& other);
 
   /// @param guess  T_map_source to start from
-  /// @throws std::invalid_argument for options that do not hold or a guess that is not finite
+  /// @throws std::invalid_argument for options that do not hold, a guess that is not finite, and a source of which a
+  /// point is not within reach or has no label
   AlignmentResult align(const NdtTarget& target, const SourcePoints& source, const Eigen::Isometry3d& guess,
                         const AlignmentOptions& options);
 

@@ -15,7 +15,8 @@ namespace saw_ndt {
 class SAW_NDT_EXPORT PoseScorer {
  public:
   /// Takes the source over.
-  /// @param outlier_ratio  of Magnusson's score function: std::invalid_argument unless in (0, 1)
+  /// @param outlier_ratio  of Magnusson's score function, in (0, 1)
+  /// @throws std::invalid_argument where it is not, or where a point of the source is not within reach or has no label
   PoseScorer(const NdtTarget& target, const SourcePoints& source,
              double outlier_ratio = AlignmentOptions().outlier_ratio);
   ~PoseScorer();

@@ -16,7 +16,7 @@ struct SAW_NDT_EXPORT GroundSubsamplingOptions {
 };
 
 /// Which ground points of a scan are kept: ground point k, counted from 0 in scan order, where
-/// floor((k + 1) rho) > floor(k rho). A ratio of 0.5 keeps every other one.
+/// floor((k + 1) rho) > floor(k rho). A ratio of 0.5 keeps every other one. It counts: not to be shared by threads.
 class SAW_NDT_EXPORT GroundSampler {
  public:
   /// Throws std::invalid_argument where an option is out of its limits.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "saw_ndt/pcl/ground_subsampling.h"
+#include "saw_ndt/pcl/impl/checked_indices.h"
 
 namespace saw_ndt {
 namespace detail {
@@ -47,6 +48,7 @@ void GroundSubsampling<PointT>::applyFilter(pcl::Indices& indices) {
     throw std::invalid_argument("labels: " + std::to_string(labels_.size()) + " for " + std::to_string(points) +
                                 " points");
   }
+  internal::requireIndicesWithin(*this->indices_, points);
   GroundSampler sampler(options_);
   // Built aside: the caller may have passed the very indices that select the input.
   pcl::Indices kept;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/pcl/impl/checked_indices.h"
 #include "saw_ndt/pcl/range_image_segmentation.h"
 
 namespace saw_ndt {
@@ -24,8 +25,8 @@ template <typename PointT>
 ScanView RangeImageSegmentation<PointT>::selectedInput() {
   const PointCloud& input = *this->input_;
   ScanView scan = viewOf(input);
-  if (input.empty()) return scan;
   if (!this->fake_indices_) {
+    internal::requireIndicesWithin(*this->indices_, input.size());
     // Points that are not selected become no returns, so that rows and file order stay what they are.
     selected_xyz_.assign(3 * input.size(), std::numeric_limits<float>::quiet_NaN());
     for (const pcl::index_t index : *this->indices_) {

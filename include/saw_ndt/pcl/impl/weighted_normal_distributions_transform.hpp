@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "saw_ndt/common/geometry.h"
 #include "saw_ndt/map/weighted_map_builder.h"
 #include "saw_ndt/pcl/cloud_view.h"
+#include "saw_ndt/pcl/impl/checked_indices.h"
 #include "saw_ndt/pcl/impl/lazy_kdtree.h"
 
 namespace saw_ndt {
@@ -19,6 +21,8 @@ namespace saw_ndt {
 template <typename PointSource, typename PointTarget, typename Scalar>
 WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::WeightedNormalDistributionsTransform() {
   this->reg_name_ = "WeightedNormalDistributionsTransform";
+  // PCL's getFitnessScore() and setIndices() look into the source, whether there is one or not.
+  this->input_ = pcl::make_shared<PointCloudSource>();
   this->tree_.reset(new LazyKdTree<PointTarget>());
   this->max_iterations_ = 35;
   this->transformation_epsilon_ = 0.1;
@@ -50,6 +54,8 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::cop
   target_is_map_ = other.target_is_map_;
   aligner_ = other.aligner_;
   result_ = other.result_;
+  // PCL makes the indices of a whole cloud anew in place, where a source has another size.
+  if (this->fake_indices_) this->indices_.reset();
   this->tree_.reset(new LazyKdTree<PointTarget>());
   if (this->target_) this->tree_->setInputCloud(this->target_);
 }
@@ -73,6 +79,13 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::set
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::align(PointCloudSource& output,
+                                                                                   const Matrix4& guess) {
+  if (this->indices_ && !this->fake_indices_) internal::requireIndicesWithin(*this->indices_, this->input_->size());
+  Base::align(output, guess);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
 void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setTargetMap(const NdtTarget& map) {
   map_ = map;
   resolution_ = static_cast<float>(map.resolution());
@@ -92,8 +105,15 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::set
 template <typename PointSource, typename PointTarget, typename Scalar>
 void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::buildTarget(
     const PointCloudTarget& cloud) {
+  bool labels_count = true;
+  if constexpr (pcl::traits::has_label<PointTarget>::value) {
+    labels_count = options_.use_weights || std::all_of(cloud.begin(), cloud.end(), [](const PointTarget& point) {
+                     return point.label < kStructuralLabelCount;
+                   });
+  }
   WeightedMapBuilder builder(resolution_);
-  addCloud(builder, cloud, Eigen::Isometry3d::Identity(), options_.threads);
+  builder.addScan(viewOf(cloud), labels_count ? labelsOf(cloud) : LabelView(), Eigen::Isometry3d::Identity(),
+                  options_.threads);
   map_ =
       NdtTarget(std::move(builder).build(), weighting_, options_.threads,
                 options_.arithmetic == Arithmetic::DOUBLE ? CellPrecision::SINGLE_AND_DOUBLE : CellPrecision::SINGLE);
@@ -135,9 +155,35 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setAlignmentOptions(
     const AlignmentOptions& options) {
   options.check();
-  const bool other_cells = options.arithmetic != options_.arithmetic;
-  options_ = options;
-  if (other_cells) rebuildTarget();
+  takeOptions(options);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setUseWeights(bool use_weights) {
+  AlignmentOptions options = options_;
+  options.use_weights = use_weights;
+  takeOptions(options);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::setNumberOfThreads(unsigned int threads) {
+  constexpr auto kMost = static_cast<unsigned int>(std::numeric_limits<int>::max());
+  options_.threads = static_cast<int>(std::min(threads, kMost));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::takeOptions(
+    const AlignmentOptions& options) {
+  const AlignmentOptions former = std::exchange(options_, options);
+  const bool lacks_labels =
+      pcl::traits::has_label<PointTarget>::value && options.use_weights && !former.use_weights && !map_.labelled();
+  if (!lacks_labels && options.arithmetic == former.arithmetic) return;
+  try {
+    rebuildTarget();
+  } catch (...) {
+    options_ = former;
+    throw;
+  }
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -160,6 +206,7 @@ void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::con
 template <typename PointSource, typename PointTarget, typename Scalar>
 SourcePoints WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::selectedSource() const {
   constexpr bool kLabelled = pcl::traits::has_label<PointSource>::value;
+  internal::requireIndicesWithin(*this->indices_, this->input_->size());
   SourcePoints points;
   points.labelled = kLabelled && options_.use_weights && map_.labelled();
   points.reserve(this->indices_->size());
@@ -203,9 +250,10 @@ AlignmentOptions WeightedNormalDistributionsTransform<PointSource, PointTarget, 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void WeightedNormalDistributionsTransform<PointSource, PointTarget, Scalar>::computeTransformation(
     PointCloudSource& output, const Matrix4& guess) {
-  Eigen::Isometry3d T_target_source;
-  T_target_source.matrix() = guess.template cast<double>();
-  if (T_target_source.matrix().allFinite()) T_target_source = normalizedRotation(T_target_source);
+  if (!guess.allFinite()) throw std::invalid_argument("the initial guess is not finite");
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  T_target_source.matrix().template topRows<3>() = guess.template topRows<3>().template cast<double>();
+  T_target_source = normalizedRotation(T_target_source);
   result_ = aligner_.align(map_, selectedSource(), T_target_source, effectiveOptions());
 
   this->converged_ = result_.converged();
