@@ -105,7 +105,7 @@ std::string helpEntry(const std::string& term, const std::string& text, std::siz
 
 }  // namespace
 
-UsageError::UsageError(const std::string& what) : std::runtime_error(printable(what)) {}
+UsageError::UsageError(const std::string& what) : std::runtime_error(internal::printable(what)) {}
 
 AppOptions::AppOptions(std::string name, std::string description)
     : name_(std::move(name)),

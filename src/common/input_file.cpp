@@ -28,15 +28,11 @@ std::ifstream openInputFile(const std::filesystem::path& path) {
 std::ifstream openTextFile(const std::filesystem::path& path) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::ifstream stream = openInputFile(path);
-  // Looked at one by one: a pipe cannot be read again from its beginning.
-  std::size_t taken = 0;
-  while (taken < kByteOrderMark.size() && stream.peek() == static_cast<unsigned char>(kByteOrderMark[taken])) {
-    stream.get();
-    ++taken;
-  }
-  if (taken == kByteOrderMark.size()) return stream;
+  char begin[kByteOrderMark.size()] = {};
+  stream.read(begin, sizeof begin);
+  if (std::string_view(begin, sizeof begin) == kByteOrderMark) return stream;
   stream.clear();  // of the end of a short file
-  for (; taken > 0; --taken) stream.unget();
+  stream.seekg(0);
   return stream;
 }
 

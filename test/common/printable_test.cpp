@@ -32,11 +32,6 @@ TEST(Printable, AllElseStays) {
   }
 }
 
-TEST(Error, TellsAllThatAFileSaysAndSendsNoCommands) {
-  const std::string reason("'\x1b[2J\0' is no number", 18);
-  EXPECT_STREQ(Error("a.txt", "line 3", reason).what(), "a.txt: line 3: '\\x1b[2J\\x00' is no numb");
-}
-
 TEST(OpenTextFile, BeginsBehindAByteOrderMark) {
   const TemporaryFolder folder;
   const std::string mark = "\xEF\xBB\xBF";
