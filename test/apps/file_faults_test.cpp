@@ -176,8 +176,8 @@ TEST_F(FileFaults, ADiskThatIsFullLeavesTheOldResults) {
 
 TEST_F(FileFaults, AMapOfNoPointIsRefusedAndTheOldOneStays) {
   for (const char* options : {"-resolution 1e-30", "-resolution 1e-30 -classical"}) {
-    expectFails("/usr/bin/env", app("build_map") + quoted(drive_folder) + path("old.map") + kSensor + options, 1,
-                {"no point"});
+    expectFails("/usr/bin/env", app("build_map") + quoted(drive_folder) + path("old.map") + kSensor + options, 2,
+                {"resolution_m = 1e-30"});
   }
   std::string far;
   for (int i = 0; i < 6; ++i) far += "1 0 0 1e20 0 1 0 1e20 0 0 1 1e20\n";

@@ -105,7 +105,7 @@ TEST_F(MapCropApp, SaysWhatIsWrongAndLeavesNothingBehind) {
   expectCropFails(2, "-around " + path("tum.txt") + "-calib " + path("calib.txt"), {"-calib", "tum.txt is not"});
   expectCropFails(2, "-box 0,0,1,1 -calib calib.txt", {"-calib goes with -around"});
   expectCropFails(2, "-radius -1 -around " + path("tum.txt"), {"radius_m = -1"});
-  expectFails(SAW_NDT_APP, path("none.map") + path("out.map") + "-box 0,0,1,1", 1, {"none.map: cannot be opened"});
+  expectFails(SAW_NDT_APP, path("none.map") + path("out.map") + "-box 0,0,1,1", 1, {"none.map: No such file"});
   expectFails(SAW_NDT_APP, path("whole.map") + path("no/out.map") + "-box 0,0,1,1", 1, {"out.map: No such file"});
 }
 

@@ -125,7 +125,7 @@ TEST_F(MapDiffApp, SaysWhatIsWrongAndLeavesNothingBehind) {
   mapOfFloor(0.0, 0.5, 1000.0).save(folder.path() / "far.map");
   const std::string both = path("floor.map") + path("box.map");
   expectFails(SAW_NDT_APP, path("floor.map"), 2, {"missing B"});
-  expectFails(SAW_NDT_APP, path("floor.map") + path("none.map"), 1, {"none.map: cannot be opened"});
+  expectFails(SAW_NDT_APP, path("floor.map") + path("none.map"), 1, {"none.map: No such file"});
   expectFails(SAW_NDT_APP, path("floor.map") + path("coarse.map"), 1,
               {"coarse.map: cannot be compared with ", "floor.map: resolution_m = 1: must be"});
   expectFails(SAW_NDT_APP, both + "-least-points 2", 2, {"least_points = 2"});

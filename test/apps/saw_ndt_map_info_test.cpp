@@ -106,7 +106,7 @@ TEST_F(MapInfoApp, SaysWhatIsWrong) {
   } cases[] = {
       {"", 2, "missing MAP"},
       {"'" + path("a.map") + "' -xml", 2, "-xml"},
-      {"'" + path("none.map") + "'", 1, "none.map: cannot be opened"},
+      {"'" + path("none.map") + "'", 1, "none.map: No such file"},
       {"'" + path("bad.map") + "'", 1, "bad.map: offset"},
       {"'" + path("bad.map") + "' -pcd '" + path("out.pcd") + "'", 1, "bad.map: offset"},
       {"'" + path("a.map") + "' -pcd '" + path("none/out.pcd") + "'", 1, "none/out.pcd: No such file"},
