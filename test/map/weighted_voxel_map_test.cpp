@@ -22,7 +22,7 @@ TEST(WeightedVoxelMap, UniformConfidencesEqualAnUnlabelledMapBitForBit) {
 }
 
 TEST(WeightedVoxelMap, FindsTheStatisticsOfEachVoxelAndOfNoOther) {
-  const WeightedVoxelMap map = mapOf(mixedCloud(6, 20000));
+  const WeightedVoxelMap map = mapOf(mixedCloud(6, 5000));
   VoxelWeighting weighting;
   weighting.confidence = ConfidenceOptions::paper();
   const std::vector<VoxelStatistics> voxels = map.statistics(weighting, 2);
