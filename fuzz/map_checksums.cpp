@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "map/localization_map_layout.h"
+#include "map/map_file_bytes.h"
 #include "map/map_file_layout.h"
 
 namespace saw_ndt {
@@ -21,13 +22,6 @@ std::uint32_t checksumAt(const std::string& bytes, std::uint64_t offset, std::ui
   return lies(bytes, offset, size) ? checksumOf(bytes.data() + offset, size) : 0;
 }
 
-template <typename Layout>
-Layout read(const std::string& bytes, std::uint64_t offset) {
-  Layout layout;
-  std::memcpy(&layout, bytes.data() + offset, sizeof layout);
-  return layout;
-}
-
 /// With the checksum, its last member, of what stands before it.
 template <typename Layout>
 void write(std::string& bytes, std::uint64_t offset, Layout layout) {
@@ -39,7 +33,7 @@ void write(std::string& bytes, std::uint64_t offset, Layout layout) {
 
 void repairMapChecksums(std::string& bytes) {
   if (bytes.size() < sizeof(MapHeaderLayout)) return;
-  auto header = read<MapHeaderLayout>(bytes, 0);
+  auto header = valueAt<MapHeaderLayout>(bytes, 0);
   const bool updated = header.version.value() == kUpdatedMapVersion;
   const std::uint64_t metadata = updated ? header.front_offset.value() : sizeof header;
   const std::uint64_t metadata_bytes = header.version.value() == kFirstMapVersion ? 0 : header.metadata_bytes.value();
@@ -47,7 +41,7 @@ void repairMapChecksums(std::string& bytes) {
   for (std::uint64_t tile = 0; tile < tiles && tile < kMostTiles; ++tile) {
     const std::uint64_t place = directory + tile * sizeof(MapTileLayout);
     if (!lies(bytes, place, sizeof(MapTileLayout))) break;
-    auto record = read<MapTileLayout>(bytes, place);
+    auto record = valueAt<MapTileLayout>(bytes, place);
     record.checksum = checksumAt(bytes, record.offset.value(), record.entry_count.value() * sizeof(MapEntryLayout));
     std::memcpy(&bytes[place], &record, sizeof record);
   }
@@ -58,13 +52,13 @@ void repairMapChecksums(std::string& bytes) {
 
 void repairLocalizationMapChecksums(std::string& bytes) {
   if (bytes.size() < sizeof(LocalizationMapHeader)) return;
-  auto header = read<LocalizationMapHeader>(bytes, 0);
+  auto header = valueAt<LocalizationMapHeader>(bytes, 0);
   header.metadata_checksum = checksumAt(bytes, sizeof header, header.metadata_bytes.value());
   header.file_bytes = bytes.size();
   for (std::uint64_t tile = 0; tile < header.tile_count.value() && tile < kMostTiles; ++tile) {
     const std::uint64_t place = header.directory_offset.value() + tile * sizeof(LocalizationTileRecord);
     if (!lies(bytes, place, sizeof(LocalizationTileRecord))) break;
-    auto record = read<LocalizationTileRecord>(bytes, place);
+    auto record = valueAt<LocalizationTileRecord>(bytes, place);
     const std::uint64_t cells = record.offset.value();
     record.cell_checksum = checksumAt(bytes, cells, record.cell_bytes.value());
     record.table_checksum = checksumAt(bytes, cells + record.cell_bytes.value(), record.table_bytes.value());

@@ -1,8 +1,10 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 #include "map/map_file_bytes.h"
+#include "map_checksums.h"
 #include "saw_ndt/localization/map_pack.h"
 #include "saw_ndt/map/map_update.h"
 #include "saw_ndt/map/weighted_map_builder.h"
@@ -28,10 +30,14 @@ WeightedMapBuilder smallMap(double x_m, bool labelled) {
   return builder;
 }
 
-std::string contentOf(const std::filesystem::path& path) {
+/// The content of a file, whose checksums a repair must leave as they are.
+std::string contentOf(const std::filesystem::path& path, void (*repair)(std::string& bytes)) {
   std::ostringstream content;
   content << std::ifstream(path, std::ios::binary).rdbuf();
-  return content.str();
+  std::string repaired = content.str();
+  repair(repaired);
+  if (repaired != content.str()) throw std::logic_error(path.string() + ": its checksums are repaired wrongly");
+  return repaired;
 }
 
 }  // namespace
@@ -43,15 +49,15 @@ void writeMapSeeds(const SeedFolder& seeds) {
   for (const bool labelled : {false, true}) {
     const std::string kind = labelled ? "labelled" : "unlabelled";
     smallMap(0.0, labelled).save(file);
-    seeds.add("map_file", kind, contentOf(file));
-    seeds.add("map_file", kind + "_version1", asVersion1(contentOf(file)));
+    seeds.add("map_file", kind, contentOf(file, repairMapChecksums));
+    seeds.add("map_file", kind + "_version1", asVersion1(contentOf(file, repairMapChecksums)));
     packMap(file, packed, {});
-    seeds.add("localization_map", kind, contentOf(packed));
+    seeds.add("localization_map", kind, contentOf(packed, repairLocalizationMapChecksums));
     smallMap(70.0, labelled).save(other);
     updateMapFile(file, {other});
-    seeds.add("map_file", kind + "_updated", contentOf(file));
+    seeds.add("map_file", kind + "_updated", contentOf(file, repairMapChecksums));
     packMap(file, packed, {});
-    seeds.add("localization_map", kind + "_tiles", contentOf(packed));
+    seeds.add("localization_map", kind + "_tiles", contentOf(packed, repairLocalizationMapChecksums));
   }
 }
 

@@ -69,7 +69,7 @@ TEST_F(KittiCalibrationForms, RawTransformsNeedALineOfARotationAndOneOfATranslat
   }
   for (const std::string T : {"", "T", "T\n", "T:", "T:\n", "T: 1 2\n", "T: 1 2 3 4\n"}) {
     expectThrows<Error>([&] { readRaw(R + T); }, {"calib_velo_to_cam.txt", "a line T of 3"});
-    expectThrows<Error>([&] { readRaw(T + "R\nT: 1 2 3\n"); }, {"calib_velo_to_cam.txt", "a line R of 9"});
+    expectThrows<Error>([&] { readRaw(T + "\nR\nT: 1 2 3\n"); }, {"calib_velo_to_cam.txt", "a line R of 9"});
   }
 }
 

@@ -41,12 +41,7 @@ class MappedDrive {
     drive = driveDownTheStreet(sensor, kScans);
     options.method = LocalizationMethod::named(method);
     options.segmentation.sensor = sensor;
-    SyntheticDrive even;
-    for (std::size_t scan = 0; scan < kScans; scan += 2) {
-      even.stamps_s.push_back(drive.stamps_s[scan]);
-      even.T_map_lidar.push_back(drive.T_map_lidar[scan]);
-      even.scans.push_back(drive.scans[scan]);
-    }
+    const SyntheticDrive even = evenScansOf(drive);
     DriveMapOptions map_options;
     map_options.segmentation = options.segmentation;
     ScansInMemory map_scans(even);

@@ -249,7 +249,7 @@ TEST_F(DamagedLocalizationMap, AbsurdCellsAreRefusedOrHarmless) {
   const auto forEachCellOf = [&](const auto& change) {
     return good.cells(0, [&](std::string& cells) {
       for (std::size_t at = heads; at < cells.size(); at += kCellBytes) {
-        auto cell = layoutAt<QuantizedCell>(cells, at);
+        auto cell = valueAt<QuantizedCell>(cells, at);
         change(cell);
         putLayout(cells, at, cell);
       }

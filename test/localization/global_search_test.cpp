@@ -139,8 +139,9 @@ TEST(GlobalSearch, FindsNothingWhereThereIsNothing) {
   EXPECT_TRUE(GlobalSearch(target).candidates(empty).empty());
   SourcePoints few;
   for (int i = 0; i < 5; ++i) few.add(static_cast<float>(5 * i), 3.0F, 1.0F, StructuralLabel::NON_GROUND);
-  few.add(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, StructuralLabel::GROUND);
   EXPECT_TRUE(GlobalSearch(target).candidates(few).empty());
+  few.add(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, StructuralLabel::GROUND);
+  expectThrows<std::invalid_argument>([&] { GlobalSearch(target).candidates(few); }, {"not finite"});
   StreetScans scans(true);
   EXPECT_TRUE(GlobalSearch(NdtTarget()).candidates(scans.at(testPoses().front(), 1)).empty());
 }

@@ -16,13 +16,6 @@ using internal::LocalizationMapHeader;
 using internal::LocalizationTileRecord;
 
 template <typename Layout>
-Layout layoutAt(const std::string& bytes, std::size_t offset) {
-  Layout layout;
-  std::memcpy(&layout, bytes.data() + offset, sizeof layout);
-  return layout;
-}
-
-template <typename Layout>
 void putLayout(std::string& bytes, std::size_t offset, const Layout& layout) {
   std::memcpy(bytes.data() + offset, &layout, sizeof layout);
 }
@@ -35,7 +28,7 @@ class Forger {
   template <typename Change>
   Forger header(const Change& change) const {
     Forger forged = *this;
-    auto header = layoutAt<LocalizationMapHeader>(bytes_, 0);
+    auto header = valueAt<LocalizationMapHeader>(bytes_, 0);
     change(header);
     forged.putHeader(header);
     return forged;
@@ -68,7 +61,7 @@ class Forger {
     for (const std::size_t number : numbers) {
       forged.bytes_ += bytes_.substr(begin + number * sizeof(LocalizationTileRecord), sizeof(LocalizationTileRecord));
     }
-    auto header = layoutAt<LocalizationMapHeader>(bytes_, 0);
+    auto header = valueAt<LocalizationMapHeader>(bytes_, 0);
     header.tile_count = numbers.size();
     header.file_bytes = forged.bytes_.size();
     forged.putHeader(header);
@@ -80,10 +73,10 @@ class Forger {
 
  private:
   std::size_t directoryOffset() const {
-    return static_cast<std::size_t>(layoutAt<LocalizationMapHeader>(bytes_, 0).directory_offset.value());
+    return static_cast<std::size_t>(valueAt<LocalizationMapHeader>(bytes_, 0).directory_offset.value());
   }
   LocalizationTileRecord recordOf(std::size_t number) const {
-    return layoutAt<LocalizationTileRecord>(bytes_, directoryOffset() + number * sizeof(LocalizationTileRecord));
+    return valueAt<LocalizationTileRecord>(bytes_, directoryOffset() + number * sizeof(LocalizationTileRecord));
   }
   void putHeader(LocalizationMapHeader header) {
     header.checksum = crc32({reinterpret_cast<const char*>(&header), sizeof header - 4});
@@ -103,7 +96,7 @@ class Forger {
     change(cells, table);
     Forger forged = *this;
     const std::string directory = bytes_.substr(directoryOffset());
-    auto header = layoutAt<LocalizationMapHeader>(bytes_, 0);
+    auto header = valueAt<LocalizationMapHeader>(bytes_, 0);
     record.offset = directoryOffset();
     record.cell_bytes = static_cast<std::uint32_t>(cells.size());
     record.cell_checksum = crc32(cells);

@@ -96,6 +96,17 @@ struct SyntheticDrive {
   std::vector<std::vector<double>> times_s;  ///< of the points, from the stamp; empty: all at once
 };
 
+/// The scans of even numbers, whose points are all measured at once.
+inline SyntheticDrive evenScansOf(const SyntheticDrive& drive) {
+  SyntheticDrive even;
+  for (std::size_t scan = 0; scan < drive.scans.size(); scan += 2) {
+    even.stamps_s.push_back(drive.stamps_s[scan]);
+    even.T_map_lidar.push_back(drive.T_map_lidar[scan]);
+    even.scans.push_back(drive.scans[scan]);
+  }
+  return even;
+}
+
 /// A drive down the street on a circle of 50 m radius, 5 m/s and ten scans a second.
 inline SyntheticDrive driveDownTheStreet(const SensorModel& sensor, int scan_count) {
   constexpr double kRadius_m = 50.0, kSpeed_mps = 5.0, kSensorHeight_m = 1.73;

@@ -125,7 +125,7 @@ TEST(AdversarialLabels, ThatAreNoneAreRefusedAndTheBuilderStaysAsItWas) {
 
 TEST(AdversarialResolutions, GiveAMapOrAreRefused) {
   const std::vector<LidarPoint> street = streetScan();
-  for (const double resolution_m : {5e-324, 1e-300, 1e-30, 1e-12, 1e-6, 1e6, 1e30, 1e300, 1.7e308}) {
+  for (const double resolution_m : {1e-9, 1e-6, 1e6, 1e9}) {
     SCOPED_TRACE(resolution_m);
     WeightedMapBuilder builder(resolution_m);
     builder.addScan(viewOf(street), {}, Eigen::Isometry3d::Identity());
@@ -133,7 +133,7 @@ TEST(AdversarialResolutions, GiveAMapOrAreRefused) {
     const NdtTarget target(builder.build());
     for (const Eigen::Vector3d& mean : target.means()) ASSERT_TRUE(mean.allFinite());
   }
-  for (const double resolution_m : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+  for (const double resolution_m : {0.0, -1.0, 5e-324, 1e-30, 9e-10, 1.1e9, 1e30, 1.7e308, std::nan(""), HUGE_VAL}) {
     EXPECT_THROW(WeightedMapBuilder{resolution_m}, std::invalid_argument) << resolution_m;
   }
 }
