@@ -8,7 +8,8 @@ namespace {
 // What is quoted from a file may be of any length; the name of the file is never cut.
 std::string shortened(const std::string& reason) {
   constexpr std::size_t kLongestReason = 500;
-  return reason.size() <= kLongestReason ? reason : reason.substr(0, kLongestReason) + "...";
+  const std::string text = internal::printableLine(reason);
+  return text.size() <= kLongestReason ? text : text.substr(0, kLongestReason) + "...";
 }
 
 }  // namespace

@@ -210,7 +210,12 @@ void packMap(const std::string& map_file, const std::string& localization_map_fi
       throw Error(map_file, "", error.what());
     }
     for (const std::vector<PackedTile>& of_block : packed) {
-      for (const PackedTile& tile : of_block) writer.add(tile);
+      for (const PackedTile& tile : of_block) {
+        if (!isWithinReach(tile.at, origin.resolution_m)) {
+          throw Error(map_file, "", "has voxels farther from its origin than a localization map reaches");
+        }
+        writer.add(tile);
+      }
     }
     if (progress) progress(first + packed.size(), blocks.size());
   }

@@ -22,10 +22,6 @@ namespace internal {
 
 namespace {
 
-// Numbers of columns of a metre, of tiles and of voxels in them are 32-bit integers.
-constexpr double kFarthestTile = 1.5e7;
-constexpr double kFarthestVoxel = 2.0e9;
-
 constexpr std::size_t kMagicBytes = sizeof kLocalizationMapMagic - 1;
 
 std::vector<double> resolutionsOf(const TargetPlan& plan) {
@@ -83,8 +79,7 @@ void LocalizationMapFile::readHeader() {
   for (int axis = 0; axis < 2; ++axis) {
     least_m_[axis] = header.least_m[axis].value();
     greatest_m_[axis] = header.greatest_m[axis].value();
-    if (!(std::abs(least_m_[axis]) <= kFarthestTile * kLocalizationTile_m) ||
-        !(std::abs(greatest_m_[axis]) <= kFarthestTile * kLocalizationTile_m)) {
+    if (!(std::abs(least_m_[axis]) <= kFarthestTile_m) || !(std::abs(greatest_m_[axis]) <= kFarthestTile_m)) {
       fail(offsetof(LocalizationMapHeader, least_m), "damaged: the header states an impossible extent");
     }
   }
@@ -121,9 +116,7 @@ LocalizationTilePlace LocalizationMapFile::tile(std::size_t number) const {
   if (place.offset < tiles_offset_ || place.offset > directory_offset_ || bytes > directory_offset_ - place.offset) {
     fail(record_offset, "damaged: a tile lies outside of the file");
   }
-  const double farthest_m =
-      (std::max(std::abs(double{1} * place.at.x), std::abs(double{1} * place.at.y)) + 1.0) * kLocalizationTile_m;
-  if (farthest_m > std::min(kFarthestTile * kLocalizationTile_m, kFarthestVoxel * origin_.resolution_m)) {
+  if (!isWithinReach(place.at, origin_.resolution_m)) {
     fail(record_offset, "damaged: a tile lies too far out");
   }
   return place;

@@ -103,6 +103,13 @@ bool visitCells(const char* bytes, std::size_t size, const TileCoordinate& at, c
 
 }  // namespace
 
+bool isWithinReach(const TileCoordinate& tile, double resolution_m) {
+  constexpr double kFarthestVoxel = 2.0e9;
+  const double farthest_m =
+      (std::max(std::abs(double{1} * tile.x), std::abs(double{1} * tile.y)) + 1.0) * kLocalizationTile_m;
+  return farthest_m <= std::min(kFarthestTile_m, kFarthestVoxel * resolution_m);
+}
+
 TileCoordinate localizationTileOf(const VoxelCoordinate& voxel, double resolution_m) {
   return {tileAlong(voxel.x(), resolution_m), tileAlong(voxel.y(), resolution_m)};
 }

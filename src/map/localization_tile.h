@@ -30,6 +30,11 @@ struct TileCoordinate {
   }
 };
 
+/// How far a localization map reaches (m): numbers of columns of a metre and of tiles are 32-bit integers.
+constexpr double kFarthestTile_m = 1.5e7 * kLocalizationTile_m;
+/// Whether a tile lies within that, and so near that its voxels can be numbered as well.
+bool isWithinReach(const TileCoordinate& tile, double resolution_m);
+
 /// The tile that holds the centre of a voxel.
 TileCoordinate localizationTileOf(const VoxelCoordinate& voxel, double resolution_m);
 /// The tile that holds a position (m). @pre less than 1e9 m away

@@ -21,6 +21,7 @@ TEST(Error, IsOneLineWithoutControlCharacters) {
 TEST(Error, ShortensWhatIsQuotedButNoNames) {
   const std::string long_text(10000, 'x');
   EXPECT_EQ(std::string(Error("a.map", "", long_text).what()), "a.map: " + long_text.substr(0, 500) + "...");
+  EXPECT_LT(std::string(Error("a.map", "", std::string(1000, '\0')).what()).size(), 520U);
   EXPECT_EQ(std::string(Error(long_text, "", "it is damaged").what()), long_text + ": it is damaged");
 }
 

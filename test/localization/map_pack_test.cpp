@@ -227,6 +227,26 @@ TEST_F(MapPack, OfNothingHasNothing) {
   EXPECT_TRUE(map.targetAround(Eigen::Vector3d::Zero(), 100.0).empty());
 }
 
+TEST_F(MapPack, OfAMapThatReachesTooFarIsRefused) {
+  for (const double x_m : {9e8, 1.1e9}) {
+    SCOPED_TRACE(x_m);
+    WeightedMapBuilder builder(2.0);
+    std::vector<LidarPoint> points;
+    for (int i = 0; i < 20; ++i)
+      points.push_back({0.1F * static_cast<float>(i % 5), 0.1F * static_cast<float>(i / 5), 0.0F});
+    Eigen::Isometry3d T_map_scan = Eigen::Isometry3d::Identity();
+    T_map_scan.translation().x() = x_m;
+    builder.addScan(viewOf(points), {}, T_map_scan);
+    if (x_m < 9.6e8) {
+      pack(builder.build(), path("far"), {});
+      EXPECT_EQ(LocalizationMap(path("far")).target(1).voxelCount(), 1U);
+    } else {
+      expectThrows<Error>([&] { pack(builder.build(), path("too_far"), {}); }, {path("statistics"), "farther"});
+      EXPECT_FALSE(std::filesystem::exists(path("too_far")));
+    }
+  }
+}
+
 TEST_F(MapPack, ForAnotherWeightingIsRefused) {
   const WeightedVoxelMap map = scatteredMap(1000);
   pack(map, path("paper"), weightingOf("weighted-s50"));
