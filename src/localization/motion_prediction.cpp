@@ -122,14 +122,17 @@ Matrix6d MotionPrediction::restart(const MeasuredPose& pose, double stamp_s) {
 }
 
 void MotionPrediction::move(const std::optional<MeasuredMotion>& motion) {
+  if (motion) {
+    requireRigid(motion->T_before_now, "T_before_now");
+    checkOption(motion->covariance.allFinite() && (motion->covariance.diagonal().array() >= 0.0).all(),
+                "motion.covariance", motion->covariance.diagonal().transpose(), "finite, without negative variances");
+  }
   if (!state_.stamp_s) return;  // the initial pose is that of this scan
   motion_complete_ = motion_complete_ && motion.has_value();
   if (!motion_complete_) {
     motion_.reset();
     return;
   }
-  requireRigid(motion->T_before_now, "T_before_now");
-  checkOption(motion->covariance.allFinite(), "motion.covariance", motion->covariance.trace(), "finite");
   if (!motion_) motion_ = MeasuredMotion();
   const Eigen::Matrix3d R_last_before = motion_->T_before_now.linear();
   Matrix6d F = Matrix6d::Identity();

@@ -7,6 +7,7 @@
 #include "registration/pose_lengths.h"
 #include "saw_ndt/common/error.h"
 #include "saw_ndt/common/geometry.h"
+#include "saw_ndt/registration/source_points.h"
 
 namespace saw_ndt {
 namespace {
@@ -55,8 +56,10 @@ void moveBy(const Vector6d& difference, Eigen::Isometry3d& T) {
 
 Innovation innovationOf(const MeasuredPosition& measured, const Eigen::Vector3d& position_m,
                         const Eigen::Matrix3d& covariance) {
-  checkOption(measured.position_m.allFinite() && measured.covariance.allFinite(), "position",
-              measured.position_m.transpose(), "finite, as its covariance");
+  checkOption((measured.position_m.array().abs() <= kFarthest_m).all(), "position", measured.position_m.transpose(),
+              "finite and no more than 1e9 m away");
+  checkOption(measured.covariance.allFinite() && (measured.covariance.diagonal().array() >= 0.0).all(),
+              "position.covariance", measured.covariance.diagonal().transpose(), "finite, without negative variances");
   Innovation innovation;
   innovation.way_m = measured.position_m - position_m;
   innovation.covariance = covariance + measured.covariance;

@@ -360,6 +360,26 @@ TEST_F(LocalizerTest, RefusesStampsThatAreNotFiniteAndInitialPosesThatAreNotRigi
   EXPECT_TRUE(localizer.localize(viewOf(scanOf(2)), 0.2).accepted());
 }
 
+TEST_F(LocalizerTest, RefusesMeasurementsOfOtherSensorsThatAreNone) {
+  Localizer localizer = underWay(options);
+  const auto refuses = [&](const ScanPriors& priors, const char* field) {
+    expectThrows<std::invalid_argument>([&] { localizer.localize(viewOf(scanOf(2)), 0.2, priors); }, {field});
+  };
+  for (const double variance : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    ScanPriors position, motion;
+    position.position.emplace().covariance.diagonal().setConstant(variance);
+    motion.motion.emplace().covariance.diagonal().setConstant(variance);
+    refuses(position, "position.covariance");
+    refuses(motion, "motion.covariance");
+  }
+  for (const double metres : {1e30, std::nan("")}) {
+    ScanPriors far;
+    far.position.emplace().position_m.x() = metres;
+    refuses(far, "position");
+  }
+  EXPECT_TRUE(localizer.localize(viewOf(scanOf(2)), 0.2).accepted());
+}
+
 TEST(Acceptance, HasWords) {
   EXPECT_STREQ(toString(Acceptance::ACCEPTED), "accepted");
   EXPECT_STREQ(toString(Acceptance::NOT_CONVERGED), "not converged");

@@ -144,7 +144,7 @@ class SAW_NDT_EXPORT Localizer {
   /// @param stamp_s  time of the scan; stamps should grow
   /// @param priors   what other sensors say of the pose of this scan
   /// @throws std::logic_error before setInitialPose() or setUnknownPose(), std::invalid_argument where the stamp or a
-  ///         prior is not finite
+  ///         prior is not finite, has a negative variance, or is a position 1e9 m away
   LocalizationResult localize(const ScanView& scan, double stamp_s, const ScanPriors& priors = {});
 
   const LocalizerOptions& options() const { return options_; }
